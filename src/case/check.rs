@@ -55,7 +55,7 @@ pub(super) struct CheckTable {
     relative_tolerance: f64,
     /// Where the expected value comes from.
     #[cfg_attr(test, schemars(example = serde_json::json!({"kind": "analytical", "source": "Timoshenko & Woinowsky-Krieger, Table 35"})))]
-    reference: Reference,
+    reference: CheckReference,
 }
 
 /// A value that must come out.
@@ -70,14 +70,14 @@ pub struct Check {
     /// Accepted |value - expected| / |expected|, above 0.
     pub relative_tolerance: f64,
     /// Where the expected value comes from.
-    pub reference: Reference,
+    pub reference: CheckReference,
 }
 
 /// The source of an expected value.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-pub struct Reference {
+pub struct CheckReference {
     /// What kind of reference.
     pub kind: ReferenceKind,
     /// Citation.

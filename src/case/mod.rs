@@ -49,7 +49,7 @@ pub use adaptive::Adaptive;
 pub use analysis::{Analysis, Buckling, Linear, Modal, Nonlinear};
 pub(crate) use bending_test::BENDING_TESTS;
 pub use bending_test::{BendingTest, FabBendLoop, Strip, StripBending, StripKind};
-pub use check::{Check, ProbePoint, Reference, ReferenceKind};
+pub use check::{Check, CheckReference, ProbePoint, ReferenceKind};
 pub(crate) use check::{numbered, unit_of};
 pub use error::CaseError;
 pub use loads::{PointOfAction, Prescribed, SheetLoad, SheetLoads};

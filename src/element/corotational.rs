@@ -20,12 +20,12 @@ type Matrix3x24 = SMatrix<f64, 3, 24>;
 
 /// Where the element rests: its axes and its corners in them.
 #[derive(Clone, Copy, Debug)]
-pub struct Reference {
+pub struct ReferenceFrame {
     axes: Matrix3<f64>,
     corners: [Vector3<f64>; 4],
 }
 
-impl Reference {
+impl ReferenceFrame {
     /// The rest position of a frame.
     pub fn of(frame: &Frame) -> Self {
         Self { axes: frame.rotation, corners: corners(frame) }
@@ -53,7 +53,7 @@ pub struct Motion {
 
 impl Motion {
     /// The motion that brings an element from rest to corners `x` with nodal rotations `r`.
-    pub fn of(reference: &Reference, x: &[Point3<f64>; 4], r: &[UnitQuaternion<f64>; 4]) -> Self {
+    pub fn of(reference: &ReferenceFrame, x: &[Point3<f64>; 4], r: &[UnitQuaternion<f64>; 4]) -> Self {
         let frame = Frame::of(x);
         let (axes, corners) = (frame.rotation, corners(&frame));
         let mut deformation = Vector24::zeros();
@@ -390,7 +390,8 @@ mod tests {
             let rest = Frame::of(&[0, 1, 2, 3].map(|i| corner(i, 0.0)));
             let x = [0, 1, 2, 3].map(|i| corner(i, size * number(0, 0)));
             let turn = [0, 1, 2, 3].map(|_| Vector3::from_fn(&mut number) * size);
-            let motion = Motion::of(&Reference::of(&rest), &x, &turn.map(UnitQuaternion::from_scaled_axis));
+            let motion =
+                Motion::of(&ReferenceFrame::of(&rest), &x, &turn.map(UnitQuaternion::from_scaled_axis));
             let any = Matrix24::from_fn(&mut number);
             let (stiffness, local) = (any + any.transpose(), Vector24::from_fn(&mut number));
             let formula = motion.tangent_in_frame(&stiffness, &local);

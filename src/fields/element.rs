@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, Matrix3, Point3, SMatrix, Vector3};
 
 use super::Resultants;
-use crate::element::corotational::{Motion, Reference};
+use crate::element::corotational::{Motion, ReferenceFrame};
 use crate::element::{
     Arcs, Cells, Frame, Matrix24, Vector24, YarnStrain, Yarns, membrane_and_plate, strain_matrices,
 };
@@ -173,7 +173,7 @@ pub fn straining<'a>(model: &'a Model, state: &'a State) -> impl Fn(usize) -> Di
         let nodes = model.mesh.quads[quad].map(|n| n as usize);
         let frame = Frame::of(&model.mesh.corners(quad));
         let (places, turns) = (nodes.map(|n| state.position[n]), nodes.map(|n| state.rotation[n]));
-        let deformation = Motion::of(&Reference::of(&frame), &places, &turns).deformation;
+        let deformation = Motion::of(&ReferenceFrame::of(&frame), &places, &turns).deformation;
         let mut u = Vector24::zeros();
         for b in 0..8 {
             let part = frame.rotation.transpose() * deformation.fixed_rows::<3>(3 * b);

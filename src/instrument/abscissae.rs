@@ -2,7 +2,7 @@
 //! curvature that they stand for.
 
 use super::Test;
-use super::dialect::{Key, Role};
+use super::dialect::{HeaderKey, Role};
 use super::layout::{Column, Context, Scanner};
 use super::ordinates::changes;
 use super::raw::Row;
@@ -48,7 +48,8 @@ impl Scanner<'_, '_> {
 
     /// The test that an ordinate belongs to, or that the header or the name of the file states.
     fn test_of_columns(&self, columns: &[Column]) -> Option<Test> {
-        let stated = self.header.known.get(&Key::Test).and_then(|e| self.context.vocabulary.test(&e.text));
+        let stated =
+            self.header.known.get(&HeaderKey::Test).and_then(|e| self.context.vocabulary.test(&e.text));
         let of_columns = columns.iter().find_map(|c| Test::of_ordinate(c.role));
         of_columns.or(stated).or(self.context.label.test)
     }

@@ -1,6 +1,6 @@
 //! Texts that say `across the warp`: the direction that they name is not theirs.
 
-use super::dialect::{DirectionWord, Key, TableColumn};
+use super::dialect::{DirectionWord, HeaderKey, TableColumn};
 use super::vocabulary::{Vocabulary, words_of};
 use super::words::normalised;
 
@@ -32,7 +32,7 @@ impl Vocabulary<'_> {
     /// Whether a word of a text is `direction`: `in weft direction` and 纬向, and not `of other weft densities`.
     pub fn says_direction(self, text: &str) -> bool {
         let is_direction = |word: String| {
-            self.key(&word) == Some(Key::Direction)
+            self.key(&word) == Some(HeaderKey::Direction)
                 || self.table_column(&word) == Some(TableColumn::Direction)
         };
         text.contains(['向', '방']) || words_of(text).any(is_direction)
@@ -42,7 +42,7 @@ impl Vocabulary<'_> {
     pub fn leads_to_a_direction(self, word: &str) -> bool {
         word == "in"
             || self.direction_word(word) == Some(DirectionWord::Along)
-            || self.key(word) == Some(Key::Direction)
+            || self.key(word) == Some(HeaderKey::Direction)
     }
 
     /// Whether words begin with a direction, perhaps behind `to the` and the like.
@@ -70,6 +70,6 @@ impl Vocabulary<'_> {
         let is_short = word.chars().count() <= 3 && word.chars().all(char::is_alphabetic);
         is_short
             || self.direction_word(word) == Some(DirectionWord::Along)
-            || self.key(word) == Some(Key::Direction)
+            || self.key(word) == Some(HeaderKey::Direction)
     }
 }

@@ -20,7 +20,7 @@ use sha2::{Digest, Sha256};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use super::error::{Problem, ReadError, bad_workbook as bad};
+use super::error::{ReadError, ReadProblem, bad_workbook as bad};
 use super::raw::{self, Row};
 use super::sniff::{Number, number, sniff};
 use super::unit_text::{split_unit, unit};
@@ -96,7 +96,7 @@ enum Part {
     Name,
 }
 
-type Failed = (usize, usize, Problem);
+type Failed = (usize, usize, ReadProblem);
 
 struct Replacing {
     rng: Pcg64,
@@ -135,7 +135,7 @@ impl Replacing {
         Ok(vec![Sample { sheet: String::new(), is_grid: false, bytes }])
     }
 
-    fn workbook(&mut self, bytes: &[u8], is_zip: bool) -> Result<Vec<Sample>, Problem> {
+    fn workbook(&mut self, bytes: &[u8], is_zip: bool) -> Result<Vec<Sample>, ReadProblem> {
         if is_zip {
             limits::archive(bytes)?
         } else {
@@ -225,7 +225,7 @@ impl Replacing {
         word.chars().map(replace).collect()
     }
 
-    fn json(&mut self, text: &str) -> Result<String, Problem> {
+    fn json(&mut self, text: &str) -> Result<String, ReadProblem> {
         let mut document: serde_json::Value = serde_json::from_str(text).map_err(bad)?;
         self.json_value(&mut document);
         Ok(document.to_string())

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::dialect::Key as HeaderKey;
+use super::dialect::HeaderKey;
 use super::means;
 use super::read::{FileContent, ReadSettings};
 use super::samples;

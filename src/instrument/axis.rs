@@ -1,7 +1,7 @@
 //! Axes: the scale that takes the numbers of a column to the SI axis of its test.
 
-use super::dialect::{Key, Role};
-use super::error::{Problem, ReadError};
+use super::dialect::{HeaderKey, Role};
+use super::error::{ReadError, ReadProblem};
 use super::header_value::positive;
 use super::layout::{Column, Context, Entry, Header};
 use super::specimen_size::{gauge, size};
@@ -78,9 +78,9 @@ impl Axes<'_> {
         let error = |problem| self.context.error(column.line, column.column, problem);
         let Some(text) = column.unit.clone().or_else(|| self.context.default_unit(column.role)) else {
             let expected = column.role.kes_unit();
-            return Err(error(Problem::UnitMissing { found: column.name.clone(), expected }));
+            return Err(error(ReadProblem::UnitMissing { found: column.name.clone(), expected }));
         };
-        let wrong = |found: &str, expected: &'static str| Problem::UnitWrong {
+        let wrong = |found: &str, expected: &'static str| ReadProblem::UnitWrong {
             found: found.to_string(),
             of: column.name.clone(),
             expected,
@@ -92,12 +92,12 @@ impl Axes<'_> {
                 .map_err(|expected| error(wrong(&text, expected)));
         }
         // An analogue output of 10 V, or of what the header says, is the full scale that the range setting states.
-        let key = if abscissa { Key::SensX } else { Key::Sens };
+        let key = if abscissa { HeaderKey::SensX } else { HeaderKey::Sens };
         let Some(entry) = self.header.known.get(&key) else {
-            return Err(error(Problem::NoRange { found: column.name.clone() }));
+            return Err(error(ReadProblem::NoRange { found: column.name.clone() }));
         };
         let (range, of_range) = volts::of_range(&entry.text);
-        let stated = self.header.known.get(&Key::Voltage).and_then(|e| volts::value(&e.text));
+        let stated = self.header.known.get(&HeaderKey::Voltage).and_then(|e| volts::value(&e.text));
         let full_volts = of_range.or(stated);
         let (value, unit) = full_scale(&Entry { text: range.clone(), ..entry.clone() }, self.context)?;
         let at_entry = |expected| self.context.error(entry.line, entry.column, wrong(&entry.text, expected));
@@ -202,17 +202,26 @@ impl Axes<'_> {
 
     /// Header lines of unknown words whose values are lengths or areas, or forces in the place of a load, for people:
     /// what was not understood is not denied.
-    fn sizes_not_understood(&self, by: Key) -> Vec<String> {
-        let possible: &[Dimension] = if by == Key::Contact { &[FORCE] } else { &[LENGTH, AREA] };
+    fn sizes_not_understood(&self, by: HeaderKey) -> Vec<String> {
+        let possible: &[Dimension] = if by == HeaderKey::Contact { &[FORCE] } else { &[LENGTH, AREA] };
         let is_size = |text: &str| {
             let text = folded(text).replace(',', ".");
             let last = text.rsplit(['x', '×']).next().unwrap_or_default().trim().to_string();
             parse_quantity(&last, "5 cm").is_ok_and(|(_, u)| possible.contains(&u.dimension))
         };
         let known = |key: &String| self.context.vocabulary.key(key).is_some();
-        let size = self.header.known.get(&Key::Size).filter(|_| by != Key::Contact).map(|e| e.text.clone());
+        let size = self
+            .header
+            .known
+            .get(&HeaderKey::Size)
+            .filter(|_| by != HeaderKey::Contact)
+            .map(|e| e.text.clone());
         let size = size.or_else(|| {
-            self.header.known.get(&Key::Length).filter(|_| by == Key::Gauge).map(|e| e.text.clone())
+            self.header
+                .known
+                .get(&HeaderKey::Length)
+                .filter(|_| by == HeaderKey::Gauge)
+                .map(|e| e.text.clone())
         });
         let other = self.header.other.iter().filter(|(key, value)| !known(key) && is_size(value));
         other.map(|(key, value)| format!("{key}: {value}")).chain(size).collect()
@@ -220,14 +229,14 @@ impl Axes<'_> {
 
     /// Area of the compression foot: the header, else 2 cm².
     fn foot_area(&self) -> Result<f64, ReadError> {
-        let Some(entry) = self.header.known.get(&Key::Area) else { return Ok(FOOT_AREA) };
+        let Some(entry) = self.header.known.get(&HeaderKey::Area) else { return Ok(FOOT_AREA) };
         let (value, unit) = full_scale(entry, self.context)?;
         if unit.dimension != AREA {
             let (found, of) = (entry.text.clone(), "area".to_string());
-            let problem = Problem::UnitWrong { found, of, expected: "cm²" };
+            let problem = ReadProblem::UnitWrong { found, of, expected: "cm²" };
             return Err(self.context.error(entry.line, entry.column, problem));
         }
-        positive(value * unit.factor, Key::Area, self.header, self.context)
+        positive(value * unit.factor, HeaderKey::Area, self.header, self.context)
     }
 }
 
@@ -246,13 +255,13 @@ fn raw(own: Dimension, by: Divisor) -> Dimension {
 }
 
 /// The header line that states it.
-fn key(by: Divisor) -> Key {
+fn key(by: Divisor) -> HeaderKey {
     match by {
-        Divisor::Area => Key::Area,
-        Divisor::Gauge => Key::Gauge,
-        Divisor::Width => Key::Width,
-        Divisor::Contact => Key::Contact,
-        Divisor::Voltage => Key::Voltage,
+        Divisor::Area => HeaderKey::Area,
+        Divisor::Gauge => HeaderKey::Gauge,
+        Divisor::Width => HeaderKey::Width,
+        Divisor::Contact => HeaderKey::Contact,
+        Divisor::Voltage => HeaderKey::Voltage,
     }
 }
 
@@ -263,7 +272,7 @@ fn full_scale(entry: &Entry, context: &Context<'_>) -> Result<(f64, Unit), ReadE
         text = text.replace(',', ".");
     }
     parse_quantity(&text, "50 gf/cm").map_err(|e| {
-        let problem = Problem::BadValue { key: "full scale".into(), reason: e.to_string() };
+        let problem = ReadProblem::BadValue { key: "full scale".into(), reason: e.to_string() };
         context.error(entry.line, entry.column, problem)
     })
 }

@@ -13,7 +13,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use super::fab::as_number;
 use super::{Direction, Parameter, ResultValue, StatedStiffness};
 use crate::finding::Place;
@@ -45,7 +45,7 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<Option<Block>, ReadError>
     if document.get("raw_data") != Some(&Value::Null) {
         return Ok(None);
     }
-    let bad = |reason: String| ReadError::new(Place::file(path), Problem::BadFab { reason });
+    let bad = |reason: String| ReadError::new(Place::file(path), ReadProblem::BadFab { reason });
     let block = document.pointer("/custom/browzwear").filter(|block| block.is_object());
     let block =
         block.ok_or_else(|| bad("`raw_data` is null, and there is no block `custom.browzwear`".into()))?;

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::column_name::ColumnName;
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use super::layout::Context;
 use super::raw::{Cell, Row};
 use super::result_table::{differ, two_units};
@@ -110,7 +110,7 @@ impl Columns {
             };
             let stated = of_cells.as_deref().or(of_heading.as_deref());
             if let Some(stated) = stated.filter(|stated| differ(stated, &unit)) {
-                let problem = Problem::BadTable { found: two_units(stated, &unit) };
+                let problem = ReadProblem::BadTable { found: two_units(stated, &unit) };
                 return Err(context.error(row.line, row.column(*index), problem));
             }
             of_cells.get_or_insert(unit);

@@ -1,6 +1,6 @@
 //! The samples of a curve, from the cells of its columns: what lacks a value is left out and told.
 
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use super::layout::{Column, Context};
 use super::raw::Row;
 use super::sample_cells::{is_missing, of_accounts};
@@ -42,7 +42,11 @@ impl<'c> Samples<'c> {
         let index = self.column.index;
         let Some(cell) = row.get(index) else {
             let found = format!("the row has no value of {:?}", self.column.name);
-            self.miss(row, "blank", context.error(row.line, row.column(index), Problem::RaggedRow { found }));
+            self.miss(
+                row,
+                "blank",
+                context.error(row.line, row.column(index), ReadProblem::RaggedRow { found }),
+            );
             return Ok(None);
         };
         if self.of_accounts
@@ -99,12 +103,12 @@ fn is_full_of_gaps(missing: &[LeftOutLine], samples: &[&Row<'_>]) -> bool {
 fn finite(row: &Row<'_>, index: usize, cell: &str, context: &Context<'_>) -> Result<f64, ReadError> {
     let problem = match number(cell, context.decimal) {
         Number::Value(value) => return Ok(value),
-        Number::NotFinite => Problem::NotFinite { found: cell.to_string() },
+        Number::NotFinite => ReadProblem::NotFinite { found: cell.to_string() },
         Number::Broken | Number::Text => {
             if let (Number::Value(grouped), None) = value(cell, context.decimal) {
                 return Ok(grouped);
             }
-            Problem::NotANumber { found: cell.to_string(), decimal: context.decimal }
+            ReadProblem::NotANumber { found: cell.to_string(), decimal: context.decimal }
         }
     };
     Err(context.error(row.line, row.column(index), problem))

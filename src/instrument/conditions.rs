@@ -6,7 +6,7 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, Visitor};
 
-use super::dialect::Key;
+use super::dialect::HeaderKey;
 use super::{Conditions, Direction, Measurement, Source, Test};
 #[cfg(test)]
 use crate::quantity::schema;
@@ -276,12 +276,12 @@ impl StatedConditions {
     }
 
     /// Whether the width, the gauge or the contact load of a test is stated; otherwise it is that of the standard set.
-    pub(super) fn states(&self, test: Test, key: Key) -> bool {
+    pub(super) fn states(&self, test: Test, key: HeaderKey) -> bool {
         let stated = self.of(test);
         match key {
-            Key::Contact => stated.contact.is_some(),
-            Key::Width => stated.width.or(self.width).is_some(),
-            Key::Gauge => stated.gauge.is_some(),
+            HeaderKey::Contact => stated.contact.is_some(),
+            HeaderKey::Width => stated.width.or(self.width).is_some(),
+            HeaderKey::Gauge => stated.gauge.is_some(),
             _ => false,
         }
     }
@@ -327,7 +327,7 @@ mod tests {
             0.245166,
             max_relative = 1e-5
         );
-        assert!(both.states(Test::Tensile, Key::Gauge) && !both.states(Test::Shear, Key::Gauge));
+        assert!(both.states(Test::Tensile, HeaderKey::Gauge) && !both.states(Test::Shear, HeaderKey::Gauge));
         assert_eq!(
             both.over_standard(Test::Roughness),
             StatedConditions { width: both.width, ..Default::default() }.over_standard(Test::Roughness)

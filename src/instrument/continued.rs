@@ -1,7 +1,7 @@
 //! Numbers below a line of words between them, `Direction,weft`, `Specimen 2`, `UNLOADING`, `Cycle 2`: their columns are those of
 //! the block above.
 
-use super::dialect::{BranchColumn, Key};
+use super::dialect::{BranchColumn, HeaderKey};
 use super::label::Label;
 use super::layout::{Block, Column, Pair, Part, Scanner};
 use super::raw::Row;
@@ -93,7 +93,8 @@ fn is_number(row: &Row<'_>, column: &Column, decimal: char) -> bool {
 
 /// Whether two blocks have the same columns, of the same specimens.
 fn are_of_one_record(pairs: &[Pair], next: &[Pair]) -> bool {
-    const OF_RECORD: [Key; 4] = [Key::Sample, Key::Specimen, Key::Direction, Key::Test];
+    const OF_RECORD: [HeaderKey; 4] =
+        [HeaderKey::Sample, HeaderKey::Specimen, HeaderKey::Direction, HeaderKey::Test];
     pairs.len() == next.len()
         && pairs.iter().zip(next).all(|(a, b)| {
             are_alike(&a.x, &b.x)
@@ -106,7 +107,7 @@ fn are_alike(a: &Column, b: &Column) -> bool {
     (a.index, &a.name, &a.unit) == (b.index, &b.name, &b.unit)
 }
 
-fn stated(pair: &Pair, key: Key) -> Option<&str> {
+fn stated(pair: &Pair, key: HeaderKey) -> Option<&str> {
     pair.header.known.get(&key).map(|entry| entry.text.as_str())
 }
 
@@ -120,7 +121,7 @@ fn says(row: &Row<'_>, vocabulary: Vocabulary<'_>) -> Option<bool> {
     let (name, value) = first.text.split_once([':', '=']).unwrap_or((&first.text, ""));
     let key = vocabulary.key(&split_unit(name.trim_start_matches('#').trim()).0);
     if let Some(key) = key.filter(|_| !is_alone || !value.trim().is_empty()) {
-        return Some(matches!(key, Key::Sample | Key::Specimen | Key::Direction));
+        return Some(matches!(key, HeaderKey::Sample | HeaderKey::Specimen | HeaderKey::Direction));
     }
     let label = Label::parse(&first.text, vocabulary);
     let is_plain = label.is_plain() && label.test.is_none();

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::dialect::{Key, Role};
+use super::dialect::{HeaderKey, Role};
 use super::factor;
 use super::layout::{Column, Entry, Pair, Scanner};
 use super::raw::Row;
@@ -12,18 +12,18 @@ use crate::finding::{Finding, Place, ReadFact};
 
 impl Scanner<'_, '_> {
     /// R118: two lines of one header that state a direction or a dimension differently; the later one is taken.
-    pub(super) fn note_contradiction(&mut self, key: Key, entry: &Entry) {
+    pub(super) fn note_contradiction(&mut self, key: HeaderKey, entry: &Entry) {
         let Some(before) = self.header.known.get(&key) else { return };
         let of_test = matches!(
             key,
-            Key::Direction
-                | Key::Width
-                | Key::Gauge
-                | Key::Length
-                | Key::Maximum
-                | Key::Pretension
-                | Key::Contact
-                | Key::Voltage
+            HeaderKey::Direction
+                | HeaderKey::Width
+                | HeaderKey::Gauge
+                | HeaderKey::Length
+                | HeaderKey::Maximum
+                | HeaderKey::Pretension
+                | HeaderKey::Contact
+                | HeaderKey::Voltage
         );
         let is_number = |row: &Row<'_>| {
             let first = row.filled().next().map(|(_, c)| number(&c.text, self.context.decimal));
@@ -35,7 +35,7 @@ impl Scanner<'_, '_> {
             .take_while(|row| row.line > before.line)
             .any(is_number);
         let differs = match key {
-            Key::Direction => {
+            HeaderKey::Direction => {
                 let direction = |text: &str| self.context.vocabulary.direction(text);
                 direction(&before.text) != direction(&entry.text)
             }
@@ -61,12 +61,12 @@ impl Scanner<'_, '_> {
     /// R122: a factor other than 1, which the samples may have been multiplied by or may still have to be.
     pub(super) fn note_factor(
         &mut self,
-        key: Option<Key>,
+        key: Option<HeaderKey>,
         name: &str,
         values: &[(String, usize)],
         line: usize,
     ) {
-        let Some((value, column)) = values.first().filter(|_| key == Some(Key::Factor)) else {
+        let Some((value, column)) = values.first().filter(|_| key == Some(HeaderKey::Factor)) else {
             return self.note_factor_in_words(key, name, values, line);
         };
         let is_one = number(value, self.context.decimal) == Number::Value(1.0);
@@ -79,17 +79,26 @@ impl Scanner<'_, '_> {
     /// The same among the words of a line that is kept as text, or behind the name of a sample.
     fn note_factor_in_words(
         &mut self,
-        key: Option<Key>,
+        key: Option<HeaderKey>,
         name: &str,
         values: &[(String, usize)],
         line: usize,
     ) {
-        if !matches!(key, None | Some(Key::Remark | Key::Sample | Key::Specimen | Key::Sens | Key::SensX)) {
+        if !matches!(
+            key,
+            None | Some(
+                HeaderKey::Remark
+                    | HeaderKey::Sample
+                    | HeaderKey::Specimen
+                    | HeaderKey::Sens
+                    | HeaderKey::SensX
+            )
+        ) {
             return;
         }
         let value = values.iter().map(|(text, _)| text.as_str()).collect::<Vec<_>>().join(" ");
         // `sens x` is a name, and its number is no factor.
-        let text = if key == Some(Key::SensX) { value.clone() } else { format!("{name} {value}") };
+        let text = if key == Some(HeaderKey::SensX) { value.clone() } else { format!("{name} {value}") };
         if factor::is_stated(&text, self.context.vocabulary) {
             let (name, value) = if value.is_empty() { ("line", name) } else { (name, value.as_str()) };
             let fact = ReadFact::StatedFactor { name: name.to_string(), value: value.to_string() };
@@ -102,12 +111,12 @@ impl Scanner<'_, '_> {
         let vocabulary = self.context.vocabulary;
         let differs = |pair: &&Pair| {
             let of_header =
-                pair.header.known.get(&Key::Direction).and_then(|e| vocabulary.direction(&e.text));
+                pair.header.known.get(&HeaderKey::Direction).and_then(|e| vocabulary.direction(&e.text));
             let of_head = pair.y.says.direction.or(pair.x.says.direction);
             of_header.is_some() && of_head.is_some() && of_header != of_head
         };
         let Some(pair) = pairs.iter().find(differs) else { return };
-        if let Some(entry) = pair.header.known.get(&Key::Direction) {
+        if let Some(entry) = pair.header.known.get(&HeaderKey::Direction) {
             let (first, first_line, second) = (entry.text.clone(), entry.line, pair.y.name.clone());
             let fact = ReadFact::StatedTwice { first, first_line, second };
             let place = Place::at(self.context.path, pair.y.line, pair.y.column);

@@ -2,8 +2,8 @@
 
 use super::axis::Axes;
 use super::column_values::Samples;
-use super::dialect::{Key, Role};
-use super::error::{Problem, ReadError};
+use super::dialect::{HeaderKey, Role};
+use super::error::{ReadError, ReadProblem};
 use super::header_value::{positive, quantity_by, quantity_of};
 use super::inference;
 use super::label::SPECIMENS;
@@ -49,7 +49,7 @@ pub(super) fn measurement(
         return Ok(None);
     }
     if points.rows.len() < 3 {
-        let problem = Problem::TooShort { points: points.rows.len() };
+        let problem = ReadProblem::TooShort { points: points.rows.len() };
         return Err(context.error(points.rows[0].0, pair.x.column, problem));
     }
     let direction = if test.is_directional() { Some(direction(pair, context)?) } else { None };
@@ -60,7 +60,7 @@ pub(super) fn measurement(
         let fact = ReadFact::TravelAsThickness { column: pair.x.name.clone() };
         findings.push(Finding::new(fact).at(Place::at(context.path, pair.x.line, pair.x.column)));
     }
-    if direction.is_some() && !header.known.contains_key(&Key::Direction) {
+    if direction.is_some() && !header.known.contains_key(&HeaderKey::Direction) {
         let place = Place::at(context.path, pair.x.line, 0);
         findings.push(Finding::new(ReadFact::DirectionFromName {}).at(place));
     }
@@ -79,7 +79,7 @@ pub(super) fn measurement(
     // A width of 1e-300 m or a range of 1e300 V is no slip that any number survives.
     if let Some(i) = curve.points().position(|(x, y)| !(x.is_finite() && y.is_finite())) {
         let found = format!("{} or {} in SI", points.rows[i].1, points.rows[i].2);
-        return Err(context.error(points.rows[i].0, pair.x.column, Problem::NotFinite { found }));
+        return Err(context.error(points.rows[i].0, pair.x.column, ReadProblem::NotFinite { found }));
     }
     if is_peak(test, header, conditions.maximum, &curve) {
         conditions.maximum = context.conditions.over_standard(test).maximum;
@@ -98,7 +98,7 @@ pub(super) fn measurement(
         test,
         sample: header
             .known
-            .get(&Key::Sample)
+            .get(&HeaderKey::Sample)
             .map(|e| e.text.clone())
             .or_else(|| context.label.sample.clone()),
         direction,
@@ -116,12 +116,12 @@ pub(super) fn measurement(
 
 /// The test that two columns and the header agree on, and what decided it.
 fn test_of(pair: &Pair, context: &Context<'_>) -> Result<(Test, &'static str), ReadError> {
-    let header = pair.header.known.get(&Key::Test);
+    let header = pair.header.known.get(&HeaderKey::Test);
     let stated = header.and_then(|e| context.vocabulary.test(&e.text));
     let elsewhere = context.label.test.or(context.dialect.and_then(|d| d.test));
     let unclear = |found: String| {
         let (line, column) = header.map_or((pair.x.line, pair.x.column), |e| (e.line, e.column));
-        context.error(line, column, Problem::TestUnclear { found })
+        context.error(line, column, ReadProblem::TestUnclear { found })
     };
     let columns = match (Test::of_abscissa(pair.x.role), Test::of_ordinate(pair.y.role)) {
         (Some(a), Some(b)) if a != b => {
@@ -132,7 +132,7 @@ fn test_of(pair: &Pair, context: &Context<'_>) -> Result<(Test, &'static str), R
                 a.name(),
                 b.name()
             );
-            return Err(context.error(pair.x.line, pair.x.column, Problem::IncompletePair { found }));
+            return Err(context.error(pair.x.line, pair.x.column, ReadProblem::IncompletePair { found }));
         }
         (a, b) => a.or(b),
     };
@@ -158,15 +158,15 @@ fn test_of(pair: &Pair, context: &Context<'_>) -> Result<(Test, &'static str), R
 }
 
 fn direction(pair: &Pair, context: &Context<'_>) -> Result<Direction, ReadError> {
-    match pair.header.known.get(&Key::Direction) {
+    match pair.header.known.get(&HeaderKey::Direction) {
         Some(entry) => context.vocabulary.direction(&entry.text).ok_or_else(|| {
             let reason = format!("{:?} is not a direction (warp, weft or bias)", entry.text);
-            context.error(entry.line, entry.column, Problem::BadValue { key: "direction".into(), reason })
+            context.error(entry.line, entry.column, ReadProblem::BadValue { key: "direction".into(), reason })
         }),
         None => {
             if let Some([a, b]) = context.label.conflict {
                 let reason = format!("the name of the file says {a} and {b}, and the header says nothing");
-                let problem = Problem::BadValue { key: "direction".into(), reason };
+                let problem = ReadProblem::BadValue { key: "direction".into(), reason };
                 return Err(context.error(pair.x.line, pair.x.column, problem));
             }
             if context.label.across {
@@ -174,16 +174,16 @@ fn direction(pair: &Pair, context: &Context<'_>) -> Result<Direction, ReadError>
                 return Err(context.error(pair.x.line, pair.x.column, error));
             }
             let named = context.label.direction;
-            named.ok_or_else(|| context.error(pair.x.line, pair.x.column, Problem::DirectionMissing))
+            named.ok_or_else(|| context.error(pair.x.line, pair.x.column, ReadProblem::DirectionMissing))
         }
     }
 }
 
 /// R013: what is across the warp of an oblique strip is not said, and no direction is guessed from it.
-pub(super) fn across_in_name() -> Problem {
+pub(super) fn across_in_name() -> ReadProblem {
     let reason =
         "the name of the file or sheet says that it is across a direction: state the direction in the header";
-    Problem::BadValue { key: "direction".into(), reason: reason.to_string() }
+    ReadProblem::BadValue { key: "direction".into(), reason: reason.to_string() }
 }
 
 /// Points from which the sign of a slope is told.
@@ -214,7 +214,7 @@ fn is_opposite(test: Test, curve: &Curve) -> bool {
 }
 
 fn specimen(header: &Header, context: &Context<'_>) -> Result<Option<usize>, ReadError> {
-    let Some(entry) = header.known.get(&Key::Specimen) else { return Ok(context.label.specimen) };
+    let Some(entry) = header.known.get(&HeaderKey::Specimen) else { return Ok(context.label.specimen) };
     if means::names_mean(&entry.text, context.vocabulary) {
         return Ok(None);
     }
@@ -222,7 +222,7 @@ fn specimen(header: &Header, context: &Context<'_>) -> Result<Option<usize>, Rea
         entry.text.chars().skip_while(|c| !c.is_ascii_digit()).take_while(char::is_ascii_digit).collect();
     if digits.trim_start_matches('0').is_empty() {
         let reason = format!("{:?} is not a specimen number (1, 2, 3 ...)", entry.text);
-        let problem = Problem::BadValue { key: "specimen".into(), reason };
+        let problem = ReadProblem::BadValue { key: "specimen".into(), reason };
         return Err(context.error(entry.line, entry.column, problem));
     }
     // A longer number is that of an order or a date: specimens are then counted in file order.
@@ -231,7 +231,7 @@ fn specimen(header: &Header, context: &Context<'_>) -> Result<Option<usize>, Rea
 
 /// `Specimen,Mean`: the record is called after the mean, and is one beside others.
 fn mean_of_specimens(header: &Header, context: &Context<'_>) -> Option<String> {
-    let text = &header.known.get(&Key::Specimen)?.text;
+    let text = &header.known.get(&HeaderKey::Specimen)?.text;
     means::names_mean(text, context.vocabulary).then(|| text.clone())
 }
 
@@ -247,27 +247,28 @@ fn conditions(
         c.width = width;
         c.gauge = gauge.filter(|_| test.spec().gauge != 0.0).unwrap_or(c.gauge);
     }
-    if let Some(width) = length_of(header, Key::Width, "width", context)? {
+    if let Some(width) = length_of(header, HeaderKey::Width, "width", context)? {
         c.width = width;
     }
     c.gauge = gauge(test, header, c.width, context)?.unwrap_or(c.gauge);
     if let Some(force) = bare_force(header) {
         // What a load cell can bear says nothing of a test that ends at a curvature or an angle.
         if test == Test::Tensile {
-            c.maximum = positive(force / c.width, Key::Maximum, header, context)?;
+            c.maximum = positive(force / c.width, HeaderKey::Maximum, header, context)?;
         }
     } else if let Some(m) = maximum(test, header, context)? {
-        c.maximum = positive(m.abs(), Key::Maximum, header, context)?;
+        c.maximum = positive(m.abs(), HeaderKey::Maximum, header, context)?;
     }
     if test.spec().pretension > 0.0
-        && let Some(w) = quantity_of::<LineForce>(header, Key::Pretension, "pretension", "gf/cm", context)?
+        && let Some(w) =
+            quantity_of::<LineForce>(header, HeaderKey::Pretension, "pretension", "gf/cm", context)?
     {
         c.pretension = w.si();
     }
     if test.spec().contact > 0.0
-        && let Some(load) = quantity_of::<Force>(header, Key::Contact, "contact load", "gf", context)?
+        && let Some(load) = quantity_of::<Force>(header, HeaderKey::Contact, "contact load", "gf", context)?
     {
-        c.contact = positive(load.si(), Key::Contact, header, context)?;
+        c.contact = positive(load.si(), HeaderKey::Contact, header, context)?;
     }
     log.push(inference::conditions(test, &c, header));
     let unknown: Vec<&str> =
@@ -280,13 +281,13 @@ fn conditions(
 
 /// The stated maximum as a force (SI), `Maximum load: 10 kgf`, whatever the test.
 fn bare_force(header: &Header) -> Option<f64> {
-    let entry = header.known.get(&Key::Maximum)?;
+    let entry = header.known.get(&HeaderKey::Maximum)?;
     folded(&entry.text).parse::<Force>().ok().map(Force::si)
 }
 
 /// The stated maximum of the driven axis (SI).
 fn maximum(test: Test, header: &Header, context: &Context<'_>) -> Result<Option<f64>, ReadError> {
-    let Some(entry) = header.known.get(&Key::Maximum) else { return Ok(None) };
+    let Some(entry) = header.known.get(&HeaderKey::Maximum) else { return Ok(None) };
     quantity_by(test.spec().read_maximum, entry, "maximum", test.kes_maximum(), context).map(Some)
 }
 
@@ -309,12 +310,12 @@ fn peak(test: Test, curve: &Curve) -> f64 {
 /// number as those that are set.
 fn is_peak(test: Test, header: &Header, stated: f64, curve: &Curve) -> bool {
     let peak = peak(test, curve);
-    let text = header.known.get(&Key::Maximum).map_or(String::new(), |e| folded(&e.text).into_owned());
+    let text = header.known.get(&HeaderKey::Maximum).map_or(String::new(), |e| folded(&e.text).into_owned());
     let start = text.trim_start_matches(|c: char| !c.is_ascii_digit());
     let number: String = start.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
     let customary = unit_text::unit(test.kes_maximum()).map_or(f64::NAN, |u| stated / u.factor);
     let is_set = is_round(customary) || number.parse().is_ok_and(is_round);
-    header.known.contains_key(&Key::Maximum) && !is_set && (peak / stated - 1.0).abs() <= PRINTED
+    header.known.contains_key(&HeaderKey::Maximum) && !is_set && (peak / stated - 1.0).abs() <= PRINTED
 }
 
 /// Whether two digits are enough for a number: 500, 50, 2.5, 8.

@@ -15,7 +15,7 @@ pub use crate::kes::Role;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
-pub enum Key {
+pub enum HeaderKey {
     /// Name of the fabric.
     Sample,
     /// Number of the specimen.
@@ -40,7 +40,7 @@ pub enum Key {
     Pretension,
     /// Load on the contactor of a sweep.
     Contact,
-    /// Full scale of the ordinate, in volts that of [`Key::Voltage`] or 10 V.
+    /// Full scale of the ordinate, in volts that of [`HeaderKey::Voltage`] or 10 V.
     Sens,
     /// Full scale of the abscissa.
     SensX,
@@ -83,7 +83,7 @@ pub enum TableColumn {
     N,
     /// How the row was had: `measured`, `inferred`, `assumed` or `doubtful`, and words for these (long form).
     Status,
-    /// A factor of the row: its words are those of [`Key::Factor`].
+    /// A factor of the row: its words are those of [`HeaderKey::Factor`].
     #[serde(skip)]
     Factor,
 }
@@ -167,7 +167,7 @@ pub struct Dialect {
     pub columns: BTreeMap<Role, Vec<String>>,
     /// Words of header lines.
     #[serde(deserialize_with = "words")]
-    pub keys: BTreeMap<Key, Vec<String>>,
+    pub keys: BTreeMap<HeaderKey, Vec<String>>,
     /// Words of directions.
     #[serde(deserialize_with = "words")]
     pub directions: BTreeMap<Direction, Vec<String>>,

@@ -14,7 +14,7 @@ pub struct ReadError {
     /// The file and position.
     pub place: Place,
     /// What is wrong there.
-    pub problem: Problem,
+    pub problem: ReadProblem,
     /// What else is known.
     pub about: Box<About>,
 }
@@ -31,7 +31,7 @@ pub struct About {
 
 impl ReadError {
     /// A problem at a place.
-    pub fn new(place: Place, problem: Problem) -> Self {
+    pub fn new(place: Place, problem: ReadProblem) -> Self {
         Self { place, problem, about: Box::default() }
     }
 
@@ -82,7 +82,7 @@ macro_rules! problems {
         /// What can be wrong with an input. Each kind has a code, a message and a cure.
         #[derive(Clone, Debug, Error, PartialEq, Serialize)]
         #[serde(untagged)]
-        pub enum Problem {
+        pub enum ReadProblem {
             $(
                 #[doc = concat!("`", $code, "`: ")]
                 $(#[$doc])*
@@ -91,7 +91,7 @@ macro_rules! problems {
             )*
         }
 
-        impl Problem {
+        impl ReadProblem {
             /// Every code, in order.
             pub const CODES: &[&str] = &[$($code),*];
 
@@ -266,6 +266,6 @@ problems! {
 }
 
 /// `R021`, in the words of a reader.
-pub(super) fn bad_workbook(reason: impl std::fmt::Display) -> Problem {
-    Problem::BadWorkbook { reason: reason.to_string() }
+pub(super) fn bad_workbook(reason: impl std::fmt::Display) -> ReadProblem {
+    ReadProblem::BadWorkbook { reason: reason.to_string() }
 }

@@ -11,7 +11,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use super::{Direction, Source};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::quantity::{Curve, STANDARD_GRAVITY};
@@ -139,7 +139,7 @@ impl FabFile {
 pub(super) fn parse(path: &Path, text: &str) -> Result<(FabFile, Vec<Finding>), ReadError> {
     let document: Value = serde_json::from_str(text).map_err(|e| {
         let place = Place::at(path, e.line(), e.column());
-        ReadError::new(place, Problem::BadJson { reason: e.to_string() })
+        ReadError::new(place, ReadProblem::BadJson { reason: e.to_string() })
     })?;
     let raw = document.get("raw_data").filter(|r| r.is_object());
     let raw = raw.ok_or_else(|| bad(path, "the document has no `raw_data` object".into()))?;
@@ -189,7 +189,7 @@ fn contact(branch: &Curve) -> Option<Contact> {
 }
 
 fn bad(path: &Path, reason: String) -> ReadError {
-    ReadError::new(Place::file(path), Problem::BadFab { reason })
+    ReadError::new(Place::file(path), ReadProblem::BadFab { reason })
 }
 
 fn strip(

@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::conditions::StatedConditions;
 use super::dialect::Dialect;
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use super::{FabricInfo, MeasuredResult, Origin};
 use crate::finding::{Finding, Place, ReadFact, in_words, position};
 use crate::platform::files;
@@ -51,12 +51,12 @@ pub(super) fn read_fabric_file(
     folder: &Path,
 ) -> Result<(FabricInfo, StatedConditions, Vec<Finding>), ReadError> {
     let path = folder.join("fabric.toml");
-    let file: FabricFile = from_toml(&path, |reason| Problem::BadFabricFile { reason })?;
+    let file: FabricFile = from_toml(&path, |reason| ReadProblem::BadFabricFile { reason })?;
     let drape = folder.join(DRAPE_FILE);
     let mut results = file.results;
     let mut findings = Vec::new();
     if files::is_file(&drape) {
-        let found: DrapeFile = from_toml(&drape, |reason| Problem::BadFabricFile { reason })?;
+        let found: DrapeFile = from_toml(&drape, |reason| ReadProblem::BadFabricFile { reason })?;
         for result in found.results {
             if results.iter().any(|r| r.quantity == result.quantity) {
                 let reason = Some("fabric.toml states it too, and is taken".into());
@@ -106,15 +106,15 @@ fn unusable(result: &MeasuredResult) -> Option<ReadFact> {
 /// # Errors
 /// `R001` and `R020`, with the position.
 pub fn read_dialect(path: &Path) -> Result<Dialect, ReadError> {
-    from_toml(path, |reason| Problem::BadDialect { reason })
+    from_toml(path, |reason| ReadProblem::BadDialect { reason })
 }
 
 fn from_toml<T: serde::de::DeserializeOwned>(
     path: &Path,
-    problem: impl Fn(String) -> Problem,
+    problem: impl Fn(String) -> ReadProblem,
 ) -> Result<T, ReadError> {
     let text = files::read_to_string(path)
-        .map_err(|e| ReadError::new(Place::file(path), Problem::Unreadable { reason: e.to_string() }))?;
+        .map_err(|e| ReadError::new(Place::file(path), ReadProblem::Unreadable { reason: e.to_string() }))?;
     toml::from_str(&text).map_err(|e: toml::de::Error| {
         let (line, column) = position(&text, e.span().map_or(0, |s| s.start));
         ReadError::new(Place::at(path, line, column), problem(in_words(&e)))

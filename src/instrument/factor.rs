@@ -1,6 +1,6 @@
 //! Factors that stand in words: `force of 2 layers`, `moment divided by 2`, `values x 10`.
 
-use super::dialect::Key;
+use super::dialect::HeaderKey;
 use super::unit_text::unit;
 use super::vocabulary::{HEADING, Vocabulary};
 use super::words::folded;
@@ -36,7 +36,7 @@ pub(super) fn in_heading(name: &str, vocabulary: Vocabulary<'_>) -> bool {
 }
 
 fn names_factor(word: &str, vocabulary: Vocabulary<'_>) -> bool {
-    vocabulary.key(word) == Some(Key::Factor)
+    vocabulary.key(word) == Some(HeaderKey::Factor)
 }
 
 /// A word for a factor or for what is counted, and a number without a unit near it.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::assembled::{AboutGroup, Group, fabrics};
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use super::fabric_file::{DRAPE_FILE, read_dialect, read_fabric_file};
 use super::file_name::{ABOUT, EXTENSIONS};
 use super::own_results::{JOURNAL, MANIFEST, OwnResults};
@@ -326,7 +326,7 @@ fn without_fabric_file(path: &Path) -> Finding {
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, ReadError> {
     let unreadable = |e: std::io::Error| {
-        ReadError::new(Place::file(folder), Problem::Unreadable { reason: e.to_string() })
+        ReadError::new(Place::file(folder), ReadProblem::Unreadable { reason: e.to_string() })
     };
     files::entries(folder).map_err(unreadable)
 }

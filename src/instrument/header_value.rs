@@ -2,8 +2,8 @@
 
 use std::str::FromStr;
 
-use super::dialect::Key;
-use super::error::{Problem, ReadError};
+use super::dialect::HeaderKey;
+use super::error::{ReadError, ReadProblem};
 use super::layout::{Context, Entry, Header};
 use super::sniff::{Number, number};
 use super::words::folded;
@@ -12,7 +12,7 @@ use crate::quantity::QuantityError;
 /// The value, if it is greater than zero.
 pub(super) fn positive(
     value: f64,
-    key: Key,
+    key: HeaderKey,
     header: &Header,
     context: &Context<'_>,
 ) -> Result<f64, ReadError> {
@@ -21,13 +21,13 @@ pub(super) fn positive(
     }
     let (line, column, text) = header.known.get(&key).map_or((0, 0, ""), |e| (e.line, e.column, &e.text));
     let reason = format!("{text:?} must be greater than zero");
-    Err(context.error(line, column, Problem::BadValue { key: format!("{key:?}").to_lowercase(), reason }))
+    Err(context.error(line, column, ReadProblem::BadValue { key: format!("{key:?}").to_lowercase(), reason }))
 }
 
 /// A header value as a quantity. Without a unit it is refused, unless KES units are taken.
 pub(super) fn quantity_of<Q: FromStr<Err = QuantityError>>(
     header: &Header,
-    key: Key,
+    key: HeaderKey,
     name: &str,
     kes_unit: &'static str,
     context: &Context<'_>,
@@ -65,9 +65,9 @@ pub(super) fn quantity_by<Q>(
     parse(&text).map_err(|e| {
         let problem = match e {
             QuantityError::NoUnit { found, .. } => {
-                Problem::UnitMissing { found: format!("{name} {found}"), expected: kes_unit }
+                ReadProblem::UnitMissing { found: format!("{name} {found}"), expected: kes_unit }
             }
-            e => Problem::BadValue { key: name.to_string(), reason: e.to_string() },
+            e => ReadProblem::BadValue { key: name.to_string(), reason: e.to_string() },
         };
         context.error(entry.line, entry.column, problem)
     })

@@ -2,7 +2,7 @@
 
 use super::axis::Scale;
 use super::conditions::standard_conditions;
-use super::dialect::Key;
+use super::dialect::HeaderKey;
 use super::layout::{Column, Context, Header, Pair};
 use super::unit_text::unit as unit_of;
 use super::{Conditions, Direction, Test};
@@ -33,14 +33,14 @@ pub(super) fn curve(
     };
     let mut text = test.name().to_string();
     if let Some(direction) = direction {
-        text += &format!(" {direction} (stated {})", place(Key::Direction));
+        text += &format!(" {direction} (stated {})", place(HeaderKey::Direction));
     }
     text += &match specimen {
-        Some(n) => format!(", specimen {n} (stated {})", place(Key::Specimen)),
+        Some(n) => format!(", specimen {n} (stated {})", place(HeaderKey::Specimen)),
         None => ", specimen not numbered".to_string(),
     };
     let [first, last] = [rows.first(), rows.last()].map(|r| r.map_or(0, |r| r.0));
-    let sample = pair.header.known.get(&Key::Sample).map(|e| &e.text).or(context.label.sample.as_ref());
+    let sample = pair.header.known.get(&HeaderKey::Sample).map(|e| &e.text).or(context.label.sample.as_ref());
     let sample = sample.map(|s| format!(" of sample {s:?}")).unwrap_or_default();
     format!("{text}{sample}: {} points in lines {first} to {last}", rows.len())
 }
@@ -49,18 +49,19 @@ pub(super) fn curve(
 pub(super) fn conditions(test: Test, c: &Conditions, header: &Header) -> String {
     let standard = standard_conditions(test);
     let all = [
-        (Key::Width, "width", c.width, standard.width, "cm"),
-        (Key::Gauge, "gauge", c.gauge, standard.gauge, "cm"),
-        (Key::Maximum, "maximum", c.maximum, standard.maximum, test.kes_maximum()),
-        (Key::Pretension, "tension", c.pretension, standard.pretension, "gf/cm"),
-        (Key::Contact, "contact load", c.contact, standard.contact, "gf"),
+        (HeaderKey::Width, "width", c.width, standard.width, "cm"),
+        (HeaderKey::Gauge, "gauge", c.gauge, standard.gauge, "cm"),
+        (HeaderKey::Maximum, "maximum", c.maximum, standard.maximum, test.kes_maximum()),
+        (HeaderKey::Pretension, "tension", c.pretension, standard.pretension, "gf/cm"),
+        (HeaderKey::Contact, "contact load", c.contact, standard.contact, "gf"),
     ];
     // What a test does not have is zero in the standard set.
     let stated: Vec<String> = all
         .into_iter()
         .filter(|(.., standard, _)| *standard > 0.0)
         .map(|(key, name, value, standard, unit)| {
-            let length = header.known.get(&Key::Length).filter(|_| key == Key::Gauge && value != standard);
+            let length =
+                header.known.get(&HeaderKey::Length).filter(|_| key == HeaderKey::Gauge && value != standard);
             let from = match header.known.get(&key).or(length) {
                 Some(entry) => format!("line {}", entry.line),
                 None if value == standard => "standard, not in the file".to_string(),

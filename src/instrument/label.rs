@@ -1,6 +1,6 @@
 //! Metadata in the name of a file or over a block of columns: `F01_warp_FB2_1`, `経-1`, `タテ`.
 
-use super::dialect::Key;
+use super::dialect::HeaderKey;
 use super::vocabulary::Vocabulary;
 use super::words::{folded, normalised};
 use super::{Direction, Test};
@@ -101,7 +101,7 @@ impl Label {
         } else {
             let word = normalised(part);
             return matches!(word.as_str(), "kes" | "kesf" | "fb1" | "fb4" | "no")
-                || vocabulary.key(part) == Some(Key::Specimen);
+                || vocabulary.key(part) == Some(HeaderKey::Specimen);
         }
         true
     }
@@ -110,7 +110,8 @@ impl Label {
     fn take_with_number(&mut self, part: &str, vocabulary: Vocabulary<'_>) -> bool {
         let word = part.trim_end_matches(|c: char| c.is_ascii_digit());
         let known = word != part
-            && (vocabulary.direction_exactly(word).is_some() || vocabulary.key(word) == Some(Key::Specimen));
+            && (vocabulary.direction_exactly(word).is_some()
+                || vocabulary.key(word) == Some(HeaderKey::Specimen));
         known && self.take(word, vocabulary) && self.take(&part[word.len()..], vocabulary)
     }
 }

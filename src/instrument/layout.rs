@@ -9,8 +9,8 @@ use std::path::Path;
 use super::Direction;
 use super::column_name::ColumnName;
 use super::conditions::StatedConditions;
-use super::dialect::{Dialect, Key, Role};
-use super::error::{Problem, ReadError};
+use super::dialect::{Dialect, HeaderKey, Role};
+use super::error::{ReadError, ReadProblem};
 use super::label::Label;
 use super::pairs;
 use super::raw::Row;
@@ -39,7 +39,7 @@ pub(super) struct Context<'a> {
 }
 
 impl Context<'_> {
-    pub fn error(&self, line: usize, column: usize, problem: Problem) -> ReadError {
+    pub fn error(&self, line: usize, column: usize, problem: ReadProblem) -> ReadError {
         ReadError::new(Place::at(self.path, line, column), problem)
     }
 
@@ -63,7 +63,7 @@ pub(super) struct Entry {
 /// Header lines in force: those that have a meaning here, and the rest untouched.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Header {
-    pub known: BTreeMap<Key, Entry>,
+    pub known: BTreeMap<HeaderKey, Entry>,
     pub other: BTreeMap<String, String>,
     /// The last line of words alone since the record before.
     pub caption: Option<String>,
@@ -176,7 +176,7 @@ pub(super) fn blocks<'t>(
         }
     }
     if blocks.is_empty() {
-        return Err(unread.unwrap_or_else(|| context.error(0, 0, Problem::Empty)));
+        return Err(unread.unwrap_or_else(|| context.error(0, 0, ReadProblem::Empty)));
     }
     let has_table = blocks.iter().any(|block| matches!(block, Block::Table { .. }));
     scanner.findings.extend(Some(stray).filter(|_| has_table).and_then(|stray| shape::apart(stray, context)));
@@ -208,7 +208,7 @@ pub(super) struct Scanner<'t, 'a> {
     pub(super) at: usize,
     pub(super) header: Header,
     /// Header lines with several values, one for each column pair of the next headings.
-    pub(super) lists: Vec<(Key, Vec<Entry>)>,
+    pub(super) lists: Vec<(HeaderKey, Vec<Entry>)>,
     /// Rows of labels over the columns of the next headings, each with the index of its cell.
     pub(super) labels: Vec<Vec<(usize, Label, Entry)>>,
     /// Line of the header's caption.
@@ -370,7 +370,7 @@ impl<'t> Scanner<'t, '_> {
                 || !row.filled().skip(1).filter(|(i, _)| used(*i)).all(|(_, c)| is_word(&c.text)));
         !is_error
             && !begins_with_overflow(row)
-            && key.is_none_or(|k| matches!(k, Key::Remark | Key::Circumstance))
+            && key.is_none_or(|k| matches!(k, HeaderKey::Remark | HeaderKey::Circumstance))
     }
 
     fn ends_data(&self, row: &Row<'_>, columns: &[Column], after_blank: bool) -> bool {
@@ -401,11 +401,11 @@ impl<'t> Scanner<'t, '_> {
         let cells = row.filled().count();
         let whole = row.filled().all(|(_, c)| !c.text.contains('.'));
         let problem = if self.context.delimiter == ',' && named < cells && whole {
-            Problem::Ambiguous {
+            ReadProblem::Ambiguous {
                 found: format!("{named} headings over {cells} cells: ',' is delimiter or decimal mark"),
             }
         } else {
-            Problem::RaggedRow { found: format!("the row has {cells} cells under {named} headings") }
+            ReadProblem::RaggedRow { found: format!("the row has {cells} cells under {named} headings") }
         };
         Err(self.context.error(row.line, row.column(named), problem))
     }
@@ -416,11 +416,11 @@ impl<'t> Scanner<'t, '_> {
             row.filled().map(|(_, c)| (folded(&c.text).into_owned(), c.column)).collect();
         let vocabulary = self.context.vocabulary;
         let key_of = |text: &str| vocabulary.key(&split_unit(text.trim_start_matches('#')).0);
-        let keys: Vec<Key> = filled.iter().filter_map(|(t, _)| key_of(t)).collect();
+        let keys: Vec<HeaderKey> = filled.iter().filter_map(|(t, _)| key_of(t)).collect();
         // `試料番号,1,試料番号,2`: one value for each column block.
         if let [first, rest @ ..] = &keys[..]
             && !rest.is_empty()
-            && !matches!(first, Key::Remark | Key::Circumstance)
+            && !matches!(first, HeaderKey::Remark | HeaderKey::Circumstance)
             && filled.len() == 2 * keys.len()
             && rest.iter().all(|k| k == first)
         {
@@ -471,7 +471,7 @@ impl<'t> Scanner<'t, '_> {
         if let (Some(inside), [(value, _)]) = (&own_unit, &mut values[..]) {
             if is_number(value) {
                 *value = format!("{value} {inside}");
-            } else if self.context.vocabulary.key(&plain) == Some(Key::Size) {
+            } else if self.context.vocabulary.key(&plain) == Some(HeaderKey::Size) {
                 *value = format!("{value} ({inside})"); // `(L x W)`, `(cm)`
             }
         }
@@ -479,17 +479,21 @@ impl<'t> Scanner<'t, '_> {
         // "Sens" is a range in English and the direction in French: the value tells.
         let is_direction = |t: &str| self.context.vocabulary.direction_exactly(t).is_some();
         let key = match (self.context.vocabulary.key(&plain), &values[..]) {
-            (Some(Key::Sens), [(value, _)]) if is_direction(value) => Some(Key::Direction),
+            (Some(HeaderKey::Sens), [(value, _)]) if is_direction(value) => Some(HeaderKey::Direction),
             // `Full scale: 5 V` is that of the output; `Output: report.csv` is none.
-            (Some(Key::Sens), [(value, _)]) if volts::value(value).is_some() => Some(Key::Voltage),
-            (Some(Key::Voltage), values) if !values.iter().any(|(v, _)| volts::value(v).is_some()) => None,
+            (Some(HeaderKey::Sens), [(value, _)]) if volts::value(value).is_some() => {
+                Some(HeaderKey::Voltage)
+            }
+            (Some(HeaderKey::Voltage), values) if !values.iter().any(|(v, _)| volts::value(v).is_some()) => {
+                None
+            }
             (key, _) => key,
         };
         // A bracket of a line without a value is no unit: `Bending results (values x 10)`, `Wool (wet)`.
         let words = if values.is_empty() { bare(name) } else { plain.clone() };
         self.note_factor(key, &words, &values, line);
         match (key, values.len()) {
-            (Some(Key::Remark | Key::Circumstance | Key::Factor) | None, _) => {
+            (Some(HeaderKey::Remark | HeaderKey::Circumstance | HeaderKey::Factor) | None, _) => {
                 let text: Vec<String> = values.into_iter().map(|(t, _)| t).collect();
                 if text.is_empty() {
                     self.header.caption = Some(words);
@@ -502,7 +506,7 @@ impl<'t> Scanner<'t, '_> {
                 for value in values {
                     let entry = entry(value);
                     self.note_contradiction(key, &entry);
-                    if key == Key::Direction {
+                    if key == HeaderKey::Direction {
                         self.note_more_than_direction(&entry);
                     }
                     self.header.known.insert(key, entry);

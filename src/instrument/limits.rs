@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 use std::io::{Cursor, Read};
 
-use super::error::{Problem, bad_workbook as bad};
+use super::error::{ReadProblem, bad_workbook as bad};
 
 /// More cells than any workbook of measurements has.
 pub(super) const CELLS: usize = 4_000_000;
@@ -21,7 +21,7 @@ const XLS_ROWS: u32 = 65_536;
 const XLS_COLUMNS: u32 = 256;
 
 /// The error of a workbook with too many cells.
-pub(super) fn too_many_cells() -> Problem {
+pub(super) fn too_many_cells() -> ReadProblem {
     bad(format!("its cells span more than {CELLS} places; remove stray cells far from the table"))
 }
 
@@ -30,7 +30,7 @@ pub(super) fn too_many_cells() -> Problem {
 ///
 /// # Errors
 /// `R021`.
-pub(super) fn archive(bytes: &[u8]) -> Result<(), Problem> {
+pub(super) fn archive(bytes: &[u8]) -> Result<(), ReadProblem> {
     if bytes.len() as u64 * DEFLATE <= UNPACKED {
         return Ok(());
     }
@@ -62,7 +62,7 @@ mod record {
 ///
 /// # Errors
 /// `R021`.
-pub(super) fn compound(bytes: &[u8]) -> Result<Vec<u8>, Problem> {
+pub(super) fn compound(bytes: &[u8]) -> Result<Vec<u8>, ReadProblem> {
     let stream = workbook_stream(bytes)?;
     let mut sheets = vec![0];
     let mut seen = BTreeSet::new();
@@ -77,7 +77,7 @@ pub(super) fn compound(bytes: &[u8]) -> Result<Vec<u8>, Problem> {
 }
 
 /// The records of an .xls.
-fn workbook_stream(bytes: &[u8]) -> Result<Vec<u8>, Problem> {
+fn workbook_stream(bytes: &[u8]) -> Result<Vec<u8>, ReadProblem> {
     let mut file = cfb::CompoundFile::open(Cursor::new(bytes)).map_err(bad)?;
     let name = ["/Workbook", "/Book"].into_iter().find(|n| file.is_stream(n));
     let name = name.ok_or_else(|| bad("it has no stream `Workbook`"))?;
@@ -114,7 +114,7 @@ fn span(
     start: usize,
     sheets: &mut Vec<usize>,
     seen: &mut BTreeSet<usize>,
-) -> Result<usize, Problem> {
+) -> Result<usize, ReadProblem> {
     let (mut low, mut high) = ([u32::MAX; 2], [0; 2]);
     let (mut at, mut total) = (start, 0);
     while let (Some(head), true) = (stream.get(at..at + 4), seen.insert(at)) {

@@ -13,7 +13,7 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use zip::ZipArchive;
 
-use super::error::{Problem, bad_workbook as bad};
+use super::error::{ReadProblem, bad_workbook as bad};
 use super::number_format::Shown;
 
 pub(super) mod xls;
@@ -50,7 +50,7 @@ fn part(archive: &mut Archive<'_>, name: &str) -> Option<String> {
 
 /// Calls `visit` for every element that begins. An element without an end is an error: the reader of cells waits for it for
 /// ever.
-fn elements(xml: &str, mut visit: impl FnMut(&str, &BytesStart<'_>)) -> Result<(), Problem> {
+fn elements(xml: &str, mut visit: impl FnMut(&str, &BytesStart<'_>)) -> Result<(), ReadProblem> {
     parts(xml, |part| {
         if let Part::Element(name, e) = part {
             visit(name, e);
@@ -67,7 +67,7 @@ enum Part<'p> {
     End(&'p str),
 }
 
-fn parts(xml: &str, mut visit: impl FnMut(Part<'_>)) -> Result<(), Problem> {
+fn parts(xml: &str, mut visit: impl FnMut(Part<'_>)) -> Result<(), ReadProblem> {
     let mut reader = Reader::from_str(xml);
     let mut open = 0usize;
     loop {
@@ -106,7 +106,7 @@ fn is_on(e: &BytesStart<'_>, name: &str) -> bool {
 ///
 /// # Errors
 /// `R021` where the XML is broken.
-pub(super) fn xlsx(bytes: &[u8]) -> Result<BTreeMap<String, Marks>, Problem> {
+pub(super) fn xlsx(bytes: &[u8]) -> Result<BTreeMap<String, Marks>, ReadProblem> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(bad)?;
     let mut targets = BTreeMap::new();
     if let Some(xml) = part(&mut archive, "xl/_rels/workbook.xml.rels") {
@@ -141,7 +141,7 @@ pub(super) fn xlsx(bytes: &[u8]) -> Result<BTreeMap<String, Marks>, Problem> {
     Ok(out)
 }
 
-fn styles_of(xml: &str) -> Result<Styles, Problem> {
+fn styles_of(xml: &str) -> Result<Styles, ReadProblem> {
     // 9 and 10 are built in: 0% and 0.00%.
     let mut formats = BTreeMap::from([9u32, 10].map(|id| (id, Rc::new(Shown::of("0%")))));
     let (mut out, mut inside, mut index) = (Styles::default(), "", 0);
@@ -173,7 +173,7 @@ fn styles_of(xml: &str) -> Result<Styles, Problem> {
     Ok(out)
 }
 
-fn sheet(xml: &str, styles: &Styles) -> Result<Marks, Problem> {
+fn sheet(xml: &str, styles: &Styles) -> Result<Marks, ReadProblem> {
     let mut marks = Marks::default();
     let number = |e: &BytesStart<'_>, name| attribute(e, name).and_then(|t| t.parse::<u32>().ok());
     let mut row = 0u32;
@@ -219,7 +219,7 @@ fn column_of(reference: &str) -> Option<u32> {
 ///
 /// # Errors
 /// `R021` where the XML is broken.
-pub(super) fn ods(bytes: &[u8]) -> Result<BTreeMap<String, Marks>, Problem> {
+pub(super) fn ods(bytes: &[u8]) -> Result<BTreeMap<String, Marks>, ReadProblem> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(bad)?;
     let mut out: BTreeMap<String, Marks> = BTreeMap::new();
     let Some(xml) = part(&mut archive, "content.xml") else { return Ok(out) };

@@ -74,8 +74,8 @@ mod workbook;
 
 pub use crate::kes::{Direction, Parameter, Shape, Test};
 pub use conditions::{StatedConditions, TestConditions, standard_conditions};
-pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, Key, Role, Statistic, TableColumn, dialects};
-pub use error::{About, Problem, ReadError};
+pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, HeaderKey, Role, Statistic, TableColumn, dialects};
+pub use error::{About, ReadError, ReadProblem};
 #[cfg(test)]
 pub(crate) use fabric_file::FabricFile;
 pub use fabric_file::{DRAPE_FILE, read_dialect};

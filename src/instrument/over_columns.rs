@@ -1,6 +1,6 @@
 //! What stands over the columns of curves: rows of labels, and a line that is a direction alone.
 
-use super::dialect::Key;
+use super::dialect::HeaderKey;
 use super::label::Label;
 use super::layout::{Entry, Scanner};
 use super::pairs;
@@ -31,7 +31,7 @@ impl Scanner<'_, '_> {
         if !complete {
             let key = |e: &Entry| self.context.vocabulary.key(&split_unit(&e.text).0);
             let is_name = |(_, l, e): &(usize, Label, Entry)| {
-                (l.sample.is_some() || l.unknown) && key(e).is_none_or(|k| k == Key::Remark)
+                (l.sample.is_some() || l.unknown) && key(e).is_none_or(|k| k == HeaderKey::Remark)
             };
             // `X1,,X2,` and `X1,X1,X2,X2`: names over blocks of columns, a blank beside each or the name again.
             let blocks = blocks(&labels);
@@ -57,10 +57,10 @@ impl Scanner<'_, '_> {
         let direction = vocabulary.direction_exactly(&text).or(label.direction.filter(|_| alone));
         let Some(direction) = direction else { return };
         let entry = Entry { text: direction.to_string(), line, column };
-        self.note_contradiction(Key::Direction, &entry);
-        self.header.known.insert(Key::Direction, entry);
+        self.note_contradiction(HeaderKey::Direction, &entry);
+        self.header.known.insert(HeaderKey::Direction, entry);
         if let Some(number) = label.specimen.filter(|_| alone) {
-            self.header.known.insert(Key::Specimen, Entry { text: number.to_string(), line, column });
+            self.header.known.insert(HeaderKey::Specimen, Entry { text: number.to_string(), line, column });
         }
         self.header.caption = None;
     }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::dialect::{BranchColumn, Key, Role, Statistic};
-use super::error::{Problem, ReadError};
+use super::dialect::{BranchColumn, HeaderKey, Role, Statistic};
+use super::error::{ReadError, ReadProblem};
 use super::label::Label;
 use super::layout::{Column, Entry, Pair, Scanner};
 use super::raw::Row;
@@ -17,7 +17,7 @@ impl Pair {
     /// How the curve sums up others, and the text that says so: its heading, or the label in place of its number.
     fn statistic(&self, vocabulary: Vocabulary<'_>) -> Option<(Statistic, &str)> {
         let name = self.y.name.as_str();
-        let label = || self.header.known.get(&Key::Specimen).map(|e| e.text.as_str());
+        let label = || self.header.known.get(&HeaderKey::Specimen).map(|e| e.text.as_str());
         let of_name = vocabulary.statistic_within(name).map(|s| (s, name));
         of_name.or_else(|| label().and_then(|l| Some((of_label(l, vocabulary)?, l))))
     }
@@ -83,9 +83,9 @@ fn label(pairs: &mut [Pair], labels: &[(usize, Label, Entry)], vocabulary: Vocab
         let with = |text: String| Entry { text, ..entry.clone() };
         let is_mean = of_label(&entry.text, vocabulary).is_some();
         let number = l.specimen.map(|n| n.to_string()).or_else(|| is_mean.then(|| entry.text.clone()));
-        pair.header.known.extend(number.map(|t| (Key::Specimen, with(t))));
+        pair.header.known.extend(number.map(|t| (HeaderKey::Specimen, with(t))));
         let direction = l.direction.or(any.filter(|_| is_mean)).map(|d| d.to_string());
-        pair.header.known.extend(direction.map(|t| (Key::Direction, with(t))));
+        pair.header.known.extend(direction.map(|t| (HeaderKey::Direction, with(t))));
     }
 }
 
@@ -95,8 +95,8 @@ fn named_in_heads(pair: &mut Pair) {
     let entry = |text: String| Entry { text, line: pair.y.line, column: pair.y.column };
     let direction = y.direction.or(x.direction).map(|d| entry(d.to_string()));
     let specimen = y.specimen.or(x.specimen).map(|n| entry(n.to_string()));
-    pair.header.known.extend(direction.map(|e| (Key::Direction, e)));
-    pair.header.known.extend(specimen.map(|e| (Key::Specimen, e)));
+    pair.header.known.extend(direction.map(|e| (HeaderKey::Direction, e)));
+    pair.header.known.extend(specimen.map(|e| (HeaderKey::Specimen, e)));
 }
 
 impl Scanner<'_, '_> {
@@ -129,7 +129,7 @@ impl Scanner<'_, '_> {
             (None, Some(c)) => {
                 Err(self.lacks(&c, "an abscissa (strain, angle, curvature, thickness or position)"))
             }
-            (None, None) => Err(self.context.error(0, 0, Problem::Empty)),
+            (None, None) => Err(self.context.error(0, 0, ReadProblem::Empty)),
         };
         let mut pairs: Vec<Pair> = halves.into_iter().map(pair).collect::<Result<_, _>>()?;
         if first.is_some() {
@@ -155,13 +155,13 @@ impl Scanner<'_, '_> {
 
     fn lacks(&self, column: &Column, other: &str) -> ReadError {
         let found = format!("column {:?} has no partner: {other} is missing", column.name);
-        self.context.error(column.line, column.column, Problem::IncompletePair { found })
+        self.context.error(column.line, column.column, ReadProblem::IncompletePair { found })
     }
 
     /// Gives every pair its own of the header values that were listed for all of them.
     pub(super) fn distribute(&mut self, pairs: &mut [Pair]) -> Result<(), ReadError> {
         for (key, entries) in std::mem::take(&mut self.lists) {
-            if let ([pair], Key::Sample, Some(first)) = (&mut *pairs, key, entries.first()) {
+            if let ([pair], HeaderKey::Sample, Some(first)) = (&mut *pairs, key, entries.first()) {
                 // `sample,Poplin, white`: a name with commas in it.
                 let texts: Vec<&str> = entries.iter().map(|entry| entry.text.as_str()).collect();
                 let name = Entry { text: texts.join(", "), ..first.clone() };
@@ -173,7 +173,7 @@ impl Scanner<'_, '_> {
                 let reason = format!("{n} values stand over {m} curves");
                 let (line, column) = entries.first().map_or((0, 0), |e| (e.line, e.column));
                 let key = format!("{key:?}").to_lowercase();
-                return Err(self.context.error(line, column, Problem::BadValue { key, reason }));
+                return Err(self.context.error(line, column, ReadProblem::BadValue { key, reason }));
             }
             for (pair, entry) in pairs.iter_mut().zip(entries) {
                 pair.header.known.insert(key, entry);

@@ -8,7 +8,7 @@ use encoding_rs::{
 };
 
 use super::dos::CodePage;
-use super::error::Problem;
+use super::error::ReadProblem;
 use super::vocabulary::known_letters;
 
 /// Decoded text and the name of the encoding that was decided.
@@ -65,7 +65,7 @@ impl Row<'_> {
 ///
 /// The whole file is decoded before anything is split, because the second byte of a CP932
 /// character can be `|` or a backslash. The error carries line and column.
-pub(super) fn decode(bytes: &[u8], label: Option<&str>) -> Result<Text, (usize, usize, Problem)> {
+pub(super) fn decode(bytes: &[u8], label: Option<&str>) -> Result<Text, (usize, usize, ReadProblem)> {
     let (set, why) = match label.and_then(|l| Encoding::for_label(l.as_bytes())) {
         Some(encoding) => (Set::Web(encoding), "stated by the dialect"),
         None => guess(bytes),
@@ -126,8 +126,8 @@ impl Set {
     }
 }
 
-fn not_text(found: String) -> Problem {
-    Problem::NotText { found }
+fn not_text(found: String) -> ReadProblem {
+    ReadProblem::NotText { found }
 }
 
 /// The encoding, and what speaks for it.

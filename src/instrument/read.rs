@@ -9,8 +9,8 @@ use super::blanks;
 use super::browzwear;
 use super::conditions::StatedConditions;
 use super::curves;
-use super::dialect::{Dialect, Key};
-use super::error::{Problem, ReadError};
+use super::dialect::{Dialect, HeaderKey};
+use super::error::{ReadError, ReadProblem};
 use super::fab::{self, FabFile};
 use super::header_value;
 use super::label::Label;
@@ -66,17 +66,17 @@ pub struct FileContent {
 /// Reads a file.
 ///
 /// # Errors
-/// See [`Problem`].
+/// See [`ReadProblem`].
 pub fn read(path: &Path, settings: &ReadSettings) -> Result<FileContent, ReadError> {
     let bytes = platform::files::read(path)
-        .map_err(|e| ReadError::new(Place::file(path), Problem::Unreadable { reason: e.to_string() }))?;
+        .map_err(|e| ReadError::new(Place::file(path), ReadProblem::Unreadable { reason: e.to_string() }))?;
     parse(path, &bytes, settings)
 }
 
 /// Reads the bytes of a file. `path` serves for its name and for messages only.
 ///
 /// # Errors
-/// See [`Problem`]; one error, the first in the file.
+/// See [`ReadProblem`]; one error, the first in the file.
 pub fn parse(path: &Path, bytes: &[u8], settings: &ReadSettings) -> Result<FileContent, ReadError> {
     let source = Source {
         path: path.to_path_buf(),
@@ -118,7 +118,7 @@ fn text(
     content.source.encoding = encoding.to_string();
     content.inference.push(format!("encoding {encoding}: {why}"));
     if text.trim().is_empty() {
-        return Err(error((0, 0, Problem::Empty)));
+        return Err(error((0, 0, ReadProblem::Empty)));
     }
     if text.trim_start().starts_with('{') {
         if let Some(values) = browzwear::parse(path, &text)? {
@@ -140,7 +140,7 @@ fn text(
         && list.trim_start().starts_with(['{', '['])
     {
         let reason = "a list of records in JSON is not read: write the table as CSV, in pandas by `to_csv(\"table.csv\", index=False)`";
-        return Err(error((0, 0, Problem::BadFab { reason: reason.into() })));
+        return Err(error((0, 0, ReadProblem::BadFab { reason: reason.into() })));
     }
     if web_page::is_page(&text) {
         content.inference.push("a web page or XML workbook: its tables are read".to_string());
@@ -269,9 +269,9 @@ fn sheets(
         content.inference.push(format!("sheet {:?}: {} rows", sheet.name, sheet.rows.len()));
         match table(&sheet.rows, &context, true, content) {
             // A sheet of remarks or charts among others.
-            Err(e) if several && e.problem == Problem::Empty => content.inference.truncate(before),
+            Err(e) if several && e.problem == ReadProblem::Empty => content.inference.truncate(before),
             // A sheet of something else: a mistake of its own costs nothing but itself, and is told.
-            Err(e) if several && matches!(e.problem, Problem::UnknownLayout { .. }) => {
+            Err(e) if several && matches!(e.problem, ReadProblem::UnknownLayout { .. }) => {
                 content.inference.truncate(before);
                 unread.push(e);
             }
@@ -293,7 +293,7 @@ fn sheets(
     }
     if content.measurements.is_empty() && content.results.is_empty() {
         let first = tables.into_iter().chain(unread).next();
-        return Err(first.unwrap_or_else(|| error(Problem::Empty)));
+        return Err(first.unwrap_or_else(|| error(ReadProblem::Empty)));
     }
     content.findings.extend(unread.into_iter().map(not_understood));
     beside_curves(tables, content)?;
@@ -341,7 +341,7 @@ fn archive(
     let means = means::leave_out(&mut content.measurements, &of_files, "files", path, vocabulary);
     content.findings.extend(means);
     if content.measurements.is_empty() && content.results.is_empty() && content.fab.is_none() {
-        return Err(content.failures.drain(..).next().unwrap_or_else(|| error(Problem::Empty)));
+        return Err(content.failures.drain(..).next().unwrap_or_else(|| error(ReadProblem::Empty)));
     }
     Ok(())
 }
@@ -389,7 +389,7 @@ fn table(
                 }
                 if content.measurements.len() == before {
                     let (line, column) = pairs.first().map_or((0, 0), |p| (p.x.line, p.x.column));
-                    return Err(context.error(line, column, Problem::Empty));
+                    return Err(context.error(line, column, ReadProblem::Empty));
                 }
             }
             Block::Table { header, region } => {
@@ -413,7 +413,7 @@ fn table(
 
 /// An areal density in the header of a curve file is a result value of its own.
 fn weight(header: &Header, context: &Context<'_>, content: &mut FileContent) -> Result<(), ReadError> {
-    let Some(entry) = header.known.get(&Key::Weight) else { return Ok(()) };
+    let Some(entry) = header.known.get(&HeaderKey::Weight) else { return Ok(()) };
     let value: ArealDensity = header_value::quantity(entry, "weight", "mg/cm²", context)?;
     let known = |(_, v): &(Option<String>, ResultValue)| v.parameter == Parameter::W && v.mean == value.si();
     if !content.results.iter().any(known) {

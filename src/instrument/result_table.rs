@@ -31,8 +31,8 @@ use layout::{Column, Layout};
 pub(super) use layout::{differ, two_units};
 use row_facts::{RowFacts, Title, no_direction};
 
-use super::dialect::{Key, Statistic, TableColumn};
-use super::error::{Problem, ReadError};
+use super::dialect::{HeaderKey, Statistic, TableColumn};
+use super::error::{ReadError, ReadProblem};
 use super::facets::Facets;
 use super::layout::{Context, Header};
 use super::raw::Row;
@@ -103,7 +103,7 @@ pub(super) fn read(
     log: &mut Vec<String>,
 ) -> Result<Contents, ReadError> {
     let mut layout = Layout::of(region, context)?;
-    let sample = header.known.get(&Key::Sample).map(|entry| entry.text.as_str());
+    let sample = header.known.get(&HeaderKey::Sample).map(|entry| entry.text.as_str());
     layout.leave_out_false_names(region, sample.is_some(), context);
     layout.count_columns(region, sample.is_some(), context);
     layout.note_numbered_columns(sample.is_some());
@@ -287,7 +287,7 @@ impl<'t> Table<'t, '_> {
         let beyond = row.filled().find(|(i, c)| *i >= named && shape::is_value(&c.text, self.context));
         let Some((index, _)) = beyond else { return Ok(()) };
         let found = format!("the row has {} cells under {named} headings", row.filled().count());
-        Err(self.context.error(row.line, row.column(index), Problem::RaggedRow { found }))
+        Err(self.context.error(row.line, row.column(index), ReadProblem::RaggedRow { found }))
     }
 
     fn row_facts(&mut self, row: &Row<'_>) -> Result<RowFacts, ReadError> {
@@ -316,7 +316,7 @@ impl<'t> Table<'t, '_> {
                             let found = format!(
                                 "the row is of {first:?} and of {name:?}: lay tables side by side under one another"
                             );
-                            let problem = Problem::BadTable { found };
+                            let problem = ReadProblem::BadTable { found };
                             return Err(self.context.error(row.line, row.column(label.index), problem));
                         }
                         *slot = Some(name);
@@ -368,7 +368,7 @@ impl<'t> Table<'t, '_> {
                 facts.parameter_at = Some(label.index);
             }
         }
-        let of_header = self.header.known.get(&Key::Sample).map(|e| folded(&e.text).into_owned());
+        let of_header = self.header.known.get(&HeaderKey::Sample).map(|e| folded(&e.text).into_owned());
         let named = id.or(fabric);
         facts.names_fabric = named.is_some();
         facts.fabric = named.or_else(|| self.above.clone()).or(of_header);
@@ -409,7 +409,7 @@ impl<'t> Table<'t, '_> {
             return Ok(n as usize);
         }
         let found = format!("{cell:?} is not a number of repeats");
-        Err(self.context.error(row.line, row.column(index), Problem::BadTable { found }))
+        Err(self.context.error(row.line, row.column(index), ReadProblem::BadTable { found }))
     }
 
     /// The values of a row.

@@ -1,7 +1,7 @@
 //! Titles of sections: a row that states a direction for those below it.
 
 use super::Direction;
-use super::dialect::{Key, TableColumn};
+use super::dialect::{HeaderKey, TableColumn};
 use super::facets::Facets;
 use super::layout::Context;
 use super::raw::Row;
@@ -58,5 +58,5 @@ fn without_marks(text: &str) -> String {
 fn is_direction_key(text: &str, context: &Context<'_>) -> bool {
     let v = context.vocabulary;
     let name = text.trim_end_matches([':', '=', ' ']);
-    v.key(name) == Some(Key::Direction) || v.table_column(name) == Some(TableColumn::Direction)
+    v.key(name) == Some(HeaderKey::Direction) || v.table_column(name) == Some(TableColumn::Direction)
 }

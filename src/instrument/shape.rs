@@ -161,7 +161,7 @@ fn states_name(row: &Row<'_>, context: &Context<'_>) -> bool {
     let (Some((_, first)), second, None) = (filled.next(), filled.next(), filled.next()) else {
         return false;
     };
-    let key = |t: &str| context.vocabulary.key(t) == Some(super::dialect::Key::Sample);
+    let key = |t: &str| context.vocabulary.key(t) == Some(super::dialect::HeaderKey::Sample);
     match (first.text.split_once([':', '=']), second) {
         (Some((name, value)), None) => key(name) && !value.trim().is_empty(),
         (_, Some((_, cell))) => {

@@ -1,7 +1,7 @@
 //! Delimiter and decimal mark, decided together over all rows.
 
 use super::cell;
-use super::error::Problem;
+use super::error::ReadProblem;
 use super::raw;
 use super::words::folded;
 
@@ -97,7 +97,11 @@ fn is_date(text: &str) -> bool {
 ///
 /// # Errors
 /// `R005` where two readings are equally good.
-pub(super) fn sniff(text: &str, delimiter: Option<char>, decimal: Option<char>) -> Result<Sniffed, Problem> {
+pub(super) fn sniff(
+    text: &str,
+    delimiter: Option<char>,
+    decimal: Option<char>,
+) -> Result<Sniffed, ReadProblem> {
     let mut best: Vec<(i64, Format)> = Vec::new();
     // Marks that do not occur cannot win, and need not be tried unless they are stated.
     let occurs = |c: char| text.contains(c);
@@ -118,13 +122,13 @@ pub(super) fn sniff(text: &str, delimiter: Option<char>, decimal: Option<char>) 
     // A stable sort: among equals the first, and so '.' before ','.
     best.sort_by_key(|(score, _)| -score);
     let Some(&(top, format)) = best.first() else {
-        return Err(Problem::Ambiguous { found: "delimiter and decimal mark are both ','".into() });
+        return Err(ReadProblem::Ambiguous { found: "delimiter and decimal mark are both ','".into() });
     };
     if let Some((_, other)) = best.iter().find(|(s, f)| *s == top && f.delimiter != format.delimiter)
         && top > 0
     {
         let found = format!("split at {:?} or at {:?}", format.delimiter, other.delimiter);
-        return Err(Problem::Ambiguous { found });
+        return Err(ReadProblem::Ambiguous { found });
     }
     if decimal.is_none() && format.decimal == ',' {
         thousands(text, format)?;
@@ -200,7 +204,7 @@ fn of_words(cell: &str, delimiter: char, decimal: char) -> i64 {
 }
 
 /// Refuses `1,234` where every number with a comma could as well be a count of thousands.
-fn thousands(text: &str, format: Format) -> Result<(), Problem> {
+fn thousands(text: &str, format: Format) -> Result<(), ReadProblem> {
     let mut example = None;
     for row in raw::rows(text, format.delimiter) {
         for (_, cell) in row.filled() {
@@ -220,7 +224,7 @@ fn thousands(text: &str, format: Format) -> Result<(), Problem> {
     match example {
         Some(cell) => {
             let found = format!("{cell:?} is {} or {}", cell.replace(',', "."), cell.replace(',', ""));
-            Err(Problem::Ambiguous { found })
+            Err(ReadProblem::Ambiguous { found })
         }
         None => Ok(()),
     }
@@ -276,7 +280,7 @@ mod tests {
     #[test]
     fn what_can_be_read_in_two_ways_is_refused_until_it_is_settled() {
         let text = "a;b\n1,234;2,345\n3,456;4,567\n";
-        assert!(matches!(sniff(text, None, None), Err(Problem::Ambiguous { .. })));
+        assert!(matches!(sniff(text, None, None), Err(ReadProblem::Ambiguous { .. })));
         let settled = sniff(text, None, Some(',')).map(|s| s.format);
         assert_eq!(settled, Ok(Format { delimiter: ';', decimal: ',' }));
     }

@@ -1,7 +1,7 @@
 //! The size of a specimen: its width and the distance between the jaws, in one line of the header or in several.
 
 use super::Test;
-use super::dialect::Key;
+use super::dialect::HeaderKey;
 use super::error::ReadError;
 use super::header_value::{positive, quantity};
 use super::layout::{Context, Header};
@@ -13,7 +13,7 @@ use crate::quantity::Length;
 /// the cloth that was cut, and says nothing of the jaws. `5 x 20 cm (L x W)` is the other way round, and so are the sizes of the
 /// instrument, `5 x 20 cm`, without a word; `5 x 10 cm` and `10 x 20 cm` are not understood then.
 pub(super) fn size(test: Test, header: &Header, context: &Context<'_>) -> Option<(f64, Option<f64>)> {
-    let entry = header.known.get(&Key::Size)?;
+    let entry = header.known.get(&HeaderKey::Size)?;
     let text = folded(&entry.text).replace(['×', 'X', '*'], "x");
     // In the bracket of the key, `(L x W)` or `(cm)`.
     let (text, inside) = text.split_once('(').unwrap_or((&text, ""));
@@ -67,17 +67,17 @@ pub(super) fn gauge(
     if customary <= 0.0 {
         return Ok(None);
     }
-    if let Some(gauge) = length_of(header, Key::Gauge, "gauge", context)? {
+    if let Some(gauge) = length_of(header, HeaderKey::Gauge, "gauge", context)? {
         return Ok(Some(gauge));
     }
-    let length = length_of(header, Key::Length, "specimen length", context)?;
+    let length = length_of(header, HeaderKey::Length, "specimen length", context)?;
     Ok(length.filter(|length| !is_square(*length, width) && *length <= customary * (1.0 + 1e-6)))
 }
 
 /// A length (m) of the header, greater than zero.
 pub(super) fn length_of(
     header: &Header,
-    key: Key,
+    key: HeaderKey,
     name: &str,
     context: &Context<'_>,
 ) -> Result<Option<f64>, ReadError> {

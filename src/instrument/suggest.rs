@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::dialect::Role;
-use super::error::Problem;
+use super::error::ReadProblem;
 use super::unit_text::{is_angular, split_unit, unit};
 use super::vocabulary::Vocabulary;
 use crate::quantity::{Dimension, divides_by_length};
 
 /// What R006 says of words over a row of numbers, and what a laboratory could write so that they are known.
-pub(super) fn unknown_words(words: &[String], vocabulary: Vocabulary<'_>) -> (Problem, Vec<String>) {
+pub(super) fn unknown_words(words: &[String], vocabulary: Vocabulary<'_>) -> (ReadProblem, Vec<String>) {
     let closest = vocabulary.closest(words);
     let found = match closest.first().filter(|_| !words.is_empty()) {
         None => "numbers stand without a heading row".to_string(),
@@ -17,7 +17,7 @@ pub(super) fn unknown_words(words: &[String], vocabulary: Vocabulary<'_>) -> (Pr
             format!("dialect {name:?} comes closest, but it does not know {}", unknown.join(", "))
         }
     };
-    (Problem::UnknownLayout { found }, layout(words, &closest))
+    (ReadProblem::UnknownLayout { found }, layout(words, &closest))
 }
 
 /// What the dialects know of a heading row, and a dialect file that names the rest, ready to be saved: the unit of a

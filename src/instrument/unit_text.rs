@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::cell::RefCell;
 use std::collections::HashMap;
 
-use super::error::Problem;
+use super::error::ReadProblem;
 use super::words::folded;
 use crate::quantity::{QuantityError, UNITS, Unit, counts_angles, divides_by_length};
 
@@ -289,8 +289,8 @@ pub(super) fn is_per_length(text: &str) -> bool {
 }
 
 /// [`unit`] with the error of the readers.
-pub(super) fn known_unit(text: &str) -> Result<Unit, Problem> {
-    unit(text).map_err(|e| Problem::UnitUnknown { reason: e.to_string() })
+pub(super) fn known_unit(text: &str) -> Result<Unit, ReadProblem> {
+    unit(text).map_err(|e| ReadProblem::UnitUnknown { reason: e.to_string() })
 }
 
 /// Volts of an analogue output; not in the unit table, since they only mean something with a range.

@@ -5,7 +5,7 @@ use std::hash::Hash;
 use std::sync::OnceLock;
 
 use super::dialect::{
-    BranchColumn, Dialect, DirectionWord, Key, Role, Statistic, TableColumn, dialects, letter_of,
+    BranchColumn, Dialect, DirectionWord, HeaderKey, Role, Statistic, TableColumn, dialects, letter_of,
 };
 use super::unit_text::{split_unit, unit};
 use super::words::{folded, normalised};
@@ -19,7 +19,7 @@ const WITHIN: usize = 32;
 /// The words of the built-in dialects; where two languages share a word, the first file's meaning holds.
 struct Index {
     columns: HashMap<&'static str, Role>,
-    keys: HashMap<&'static str, Key>,
+    keys: HashMap<&'static str, HeaderKey>,
     directions: HashMap<&'static str, Direction>,
     direction_words: HashMap<&'static str, DirectionWord>,
     tests: HashMap<&'static str, Test>,
@@ -58,7 +58,7 @@ fn collect<K: 'static, V>(
 /// The words of columns of result tables, those for factors in headers among them.
 fn table_columns() -> HashMap<&'static str, TableColumn> {
     let mut columns = collect(|d| &d.table, |k| Some(*k));
-    for (word, _) in collect(|d| &d.keys, |k| (*k == Key::Factor).then_some(())) {
+    for (word, _) in collect(|d| &d.keys, |k| (*k == HeaderKey::Factor).then_some(())) {
         columns.entry(word).or_insert(TableColumn::Factor);
     }
     columns
@@ -177,7 +177,7 @@ impl<'a> Vocabulary<'a> {
         self.find(name, false, |d| &d.columns, &index().columns)
     }
 
-    pub fn key(self, name: &str) -> Option<Key> {
+    pub fn key(self, name: &str) -> Option<HeaderKey> {
         self.find(name, false, |d| &d.keys, &index().keys)
     }
 
@@ -213,7 +213,7 @@ impl<'a> Vocabulary<'a> {
     pub fn says_more_than_direction(self, text: &str) -> bool {
         let is_direction = |word: &str| {
             self.direction(word).is_some()
-                || self.key(word) == Some(Key::Direction)
+                || self.key(word) == Some(HeaderKey::Direction)
                 || self.table_column(word) == Some(TableColumn::Direction)
         };
         let means_nothing = |word: &str| {
@@ -277,7 +277,8 @@ impl<'a> Vocabulary<'a> {
         let named = self.find(name, false, |d| &d.table, &index().table);
         // Those of the built-in dialects are in the index.
         named.or_else(|| {
-            (!self.user.is_empty() && self.key(name) == Some(Key::Factor)).then_some(TableColumn::Factor)
+            (!self.user.is_empty() && self.key(name) == Some(HeaderKey::Factor))
+                .then_some(TableColumn::Factor)
         })
     }
 

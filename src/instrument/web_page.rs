@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-use super::error::{Problem, bad_workbook as bad};
+use super::error::{ReadProblem, bad_workbook as bad};
 use super::raw::{Cell, Row};
 
 /// Columns over which one cell of a head may stand.
@@ -29,7 +29,7 @@ pub(super) fn is_page(text: &str) -> bool {
 ///
 /// # Errors
 /// `R021` where the page cannot be followed.
-pub(super) fn rows(text: &str) -> Result<Vec<Row<'static>>, Problem> {
+pub(super) fn rows(text: &str) -> Result<Vec<Row<'static>>, ReadProblem> {
     let mut reader = Reader::from_str(text);
     let config = reader.config_mut();
     // Pages leave tags open, close others twice, and write & as it is.

@@ -7,7 +7,7 @@ use std::io::{Cursor, Read};
 use calamine::{Data, DataRef, Ods, Range, Reader, SheetType, SheetVisible, Xls, Xlsx};
 
 use super::cell;
-use super::error::{Problem, bad_workbook as bad};
+use super::error::{ReadProblem, bad_workbook as bad};
 use super::limits;
 use super::marks::{self, Marks};
 use super::raw::{Cell, Row};
@@ -87,7 +87,7 @@ pub(super) fn is_workbook(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// `R021`.
-pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<Book, Problem> {
+pub(super) fn sheets(bytes: &[u8], decimal: Option<char>) -> Result<Book, ReadProblem> {
     let mut left_out = LeftOut::default();
     // Damaged records are more than the crates that read them expect.
     let read = guarded(|| match archive(bytes) {
@@ -132,7 +132,7 @@ pub(super) fn mark(rows: &[Row<'_>]) -> char {
 ///
 /// # Errors
 /// `R021`.
-pub(super) fn files(bytes: &[u8]) -> Result<Vec<(String, Vec<u8>)>, Problem> {
+pub(super) fn files(bytes: &[u8]) -> Result<Vec<(String, Vec<u8>)>, ReadProblem> {
     let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).map_err(bad)?;
     let mut out = Vec::new();
     for i in 0..zip.len() {
@@ -192,7 +192,7 @@ fn number_text(n: f64, decimal: char) -> String {
 }
 
 /// Adds a cell that holds something.
-fn insert(cells: &mut Cells, (row, column): (u32, u32), value: DataRef<'_>) -> Result<(), Problem> {
+fn insert(cells: &mut Cells, (row, column): (u32, u32), value: DataRef<'_>) -> Result<(), ReadProblem> {
     let value = match value {
         DataRef::Empty => return Ok(()),
         DataRef::Int(n) => Value::Number(n as f64),
@@ -316,7 +316,7 @@ fn apply(name: String, mut cells: Cells, marks: &Marks, left_out: &mut LeftOut) 
     Shown { left_out: &all - &kept, name, cells }
 }
 
-fn xlsx(bytes: &[u8], left_out: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
+fn xlsx(bytes: &[u8], left_out: &mut LeftOut) -> Result<Vec<Shown>, ReadProblem> {
     limits::archive(bytes)?;
     let mut book = Xlsx::new(Cursor::new(bytes)).map_err(bad)?;
     let mut marks = marks::xlsx(bytes)?;
@@ -334,7 +334,7 @@ fn xlsx(bytes: &[u8], left_out: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
     Ok(out)
 }
 
-fn ods(bytes: &[u8], left_out: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
+fn ods(bytes: &[u8], left_out: &mut LeftOut) -> Result<Vec<Shown>, ReadProblem> {
     limits::archive(bytes)?;
     // First, as it refuses XML that was cut.
     let mut marks = marks::ods(bytes)?;
@@ -349,7 +349,7 @@ fn ods(bytes: &[u8], left_out: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
     Ok(out)
 }
 
-fn xls(bytes: &[u8], left_out: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
+fn xls(bytes: &[u8], left_out: &mut LeftOut) -> Result<Vec<Shown>, ReadProblem> {
     let mut marks = marks::xls::marks(&limits::compound(bytes)?);
     let mut book = Xls::new(Cursor::new(bytes)).map_err(bad)?;
     let mut out = Vec::new();
@@ -363,7 +363,7 @@ fn xls(bytes: &[u8], left_out: &mut LeftOut) -> Result<Vec<Shown>, Problem> {
 }
 
 /// The cells of a range that hold anything.
-fn used(range: &Range<Data>) -> Result<Cells, Problem> {
+fn used(range: &Range<Data>) -> Result<Cells, ReadProblem> {
     let mut cells = Cells::new();
     let (row, column) = range.start().unwrap_or_default();
     for (r, c, value) in range.used_cells() {

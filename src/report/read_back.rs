@@ -267,7 +267,7 @@ mod tests {
     fn a_u3m_material_of_ours_gives_its_section() {
         use crate::report::cards::{self, card};
         let made = section(&sheet(), &Assumptions::default()).unwrap();
-        let material = cards::Material { sheet: &sheet(), made: &made, stamp: None, crimp: None };
+        let material = cards::CardInput { sheet: &sheet(), made: &made, stamp: None, crimp: None };
         let written = card(cards::named("u3m").unwrap(), &material).unwrap().text;
         let Some(ReadDocument::Sections(read)) = super::read(written.as_bytes()).unwrap() else {
             panic!("none")

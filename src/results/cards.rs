@@ -13,7 +13,7 @@ use super::observer::Observer;
 use super::section::Sectioned;
 use crate::finding::Place;
 use crate::quantity::Ratio;
-use crate::report::cards::{Material, Target, card, named};
+use crate::report::cards::{CardInput, Target, card, named};
 
 /// The material file of a fabric.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -83,7 +83,7 @@ pub fn cards_with(
     let (mut cards, mut failures) = (Vec::new(), Vec::new());
     let pairs = targets.iter().flat_map(|target| sections.iter().map(move |section| (*target, section)));
     for (target, Sectioned { path, sheet, made }) in pairs {
-        match card(target, &Material { sheet, made, stamp, crimp }) {
+        match card(target, &CardInput { sheet, made, stamp, crimp }) {
             Ok(card) => {
                 for finding in card.findings {
                     observer.found(Some(&sheet.name), &finding.at(Place::file(path)));

@@ -4,14 +4,14 @@ use super::failure::Failure;
 use super::folder::Folder;
 use super::task::Task;
 use crate::constitutive::Constitutive;
-use crate::report::cards::{self, DrapedSheet, Material};
+use crate::report::cards::{self, CardInput, DrapedSheet};
 use crate::study::Drape;
 
 /// Writes `<stem>.usda` with a line of what shape it is, if the drape is that of a fabric: a case with constants of its own has no origin to tell.
 pub(super) fn write(task: &Task, d: &Drape, about: String, folder: &Folder) -> Result<(), Failure> {
     let (Some(sheet), (_, Some(made))) = (task.fabric, task.section()?) else { return Ok(()) };
     let made = Constitutive { section: d.model.section.clone(), ..made };
-    let card = cards::draped(&Material { sheet, made: &made, stamp: None, crimp: None }, &whole(d, about))?;
+    let card = cards::draped(&CardInput { sheet, made: &made, stamp: None, crimp: None }, &whole(d, about))?;
     folder.write(&format!("{}.usda", task.stem()), card.text.as_bytes())
 }
 

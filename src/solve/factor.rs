@@ -48,7 +48,7 @@ pub struct SymbolicAnalysis {
 
 #[derive(Debug)]
 enum Symbolic {
-    General(Arc<general::Symbolic>),
+    General(Arc<general::GeneralSymbolic>),
     Multifrontal(Arc<multifrontal::Symbolic>),
 }
 
@@ -87,7 +87,7 @@ pub fn analyse_ordered(
     assert!((1..=MAX_BLOCK).contains(&block), "{block} dofs per node");
     assert_eq!(order.node_at.len(), graph.nodes, "an order of the graph's nodes");
     let symbolic = match path {
-        Path::Faer => Symbolic::General(Arc::new(general::Symbolic::new(graph, block, order)?)),
+        Path::Faer => Symbolic::General(Arc::new(general::GeneralSymbolic::new(graph, block, order)?)),
         Path::Auto | Path::Multifrontal => {
             Symbolic::Multifrontal(Arc::new(multifrontal::Symbolic::new(graph, block, order)))
         }
@@ -194,7 +194,7 @@ pub struct Factor(Numeric);
 
 #[derive(Debug)]
 enum Numeric {
-    General(general::Numeric),
+    General(general::GeneralNumeric),
     Multifrontal(multifrontal::Numeric),
 }
 

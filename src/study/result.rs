@@ -13,7 +13,7 @@ use super::history::History;
 use super::load_path::{LoadPath, LoadStepEnd};
 use super::mesh_series::Convergence;
 use super::uncertainty::Uncertainty;
-use crate::case::Reference;
+use crate::case::CheckReference;
 use crate::element::Mass;
 use crate::fields::{
     ErrorEstimate, ProbeValue, Recovery, Resultants, curvatures, curvatures_moved, element_means,
@@ -71,7 +71,7 @@ pub struct CheckResult {
     /// Whether it holds.
     pub passed: bool,
     /// Where the expected value comes from.
-    pub reference: Reference,
+    pub reference: CheckReference,
 }
 
 impl CheckResult {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::VerifyError;
 use super::function::Function;
-use super::problem::Problem;
+use super::problem::VerifyProblem;
 use super::problem::setting::Statics;
 use crate::platform::Stopwatch;
 
@@ -16,7 +16,7 @@ pub struct Line {
     /// What the value is, with its normalisation.
     pub quantity: String,
     /// The problem that gives the value.
-    pub problem: Problem,
+    pub problem: VerifyProblem,
     /// What the value is compared with.
     pub reference: Reference,
     /// How far from the reference it may be.

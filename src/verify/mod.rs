@@ -1,7 +1,7 @@
 //! The public verification suite: problems with known answers, solved by this program as anyone
 //! would solve them.
 //!
-//! The lines are data, `suite/*.toml`; each names a [`Problem`] with its parameters, a reference with
+//! The lines are data, `suite/*.toml`; each names a [`VerifyProblem`] with its parameters, a reference with
 //! its kind and citation, and a tolerance. A reference is never an output of this program: it is a closed
 //! form (the [`analytical`](crate::analytical) module), a value that an independent implementation of the
 //! same element gave, or a published one.
@@ -22,7 +22,7 @@ pub use function::Function;
 pub use line::{ComparedValue, Expected, Kind, Line, LineOutcome, RESIDUAL, Reference, Tolerance};
 pub use paper::{Claim, CurveChart, PaperCurve, SheetPicture, claims};
 pub use paper_table::{CheckedClaim, paper_document, paper_text};
-pub use problem::Problem;
+pub use problem::VerifyProblem;
 pub use problem::plate::BentPlate;
 pub use suite::suite;
 pub use table::{CheckedLine, LineEntry, VerifyDocument, document, text};

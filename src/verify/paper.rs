@@ -6,7 +6,7 @@ use toml::{Table, Value};
 
 use super::error::VerifyError;
 use super::line::Line;
-use super::problem::Problem;
+use super::problem::VerifyProblem;
 use super::problem::plate::{BentPlate, PlateProblem};
 use super::problem::setting::Statics;
 use super::suite::{Entry, with};
@@ -148,7 +148,7 @@ impl CurveEntry {
             return Ok(constant);
         }
         let problem = self.problem.clone().unwrap_or_default();
-        let problem: Problem = with(&problem, &self.along, value)
+        let problem: VerifyProblem = with(&problem, &self.along, value)
             .try_into()
             .unwrap_or_else(|e| panic!("built-in claims: {}: {e}", self.name));
         Ok(problem.value(&mut Statics::default())?.0)
@@ -252,7 +252,7 @@ mod tests {
                 assert!(curve.constant.is_some(), "{}", curve.name);
                 continue;
             };
-            let read: Result<Problem, _> = with(problem, &curve.along, &curve.values[0]).try_into();
+            let read: Result<VerifyProblem, _> = with(problem, &curve.along, &curve.values[0]).try_into();
             assert!(read.is_ok(), "{}: {read:?}", curve.name);
         }
     }

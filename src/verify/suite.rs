@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::line::{Expected, Kind, Line, Reference, Tolerance};
-use super::problem::Problem;
+use super::problem::VerifyProblem;
 
 const FILES: [&str; 12] = [
     include_str!("suite/element.toml"),
@@ -115,7 +115,7 @@ impl Entry {
             .zip(references.into_iter().zip(expected))
             .map(|((id, problem), (reference, expected))| Line {
                 problem: problem
-                    .try_into::<Problem>()
+                    .try_into::<VerifyProblem>()
                     .unwrap_or_else(|e| panic!("built-in suite: {id}: {e}")),
                 id,
                 quantity: self.quantity.clone(),

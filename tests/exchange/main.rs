@@ -24,7 +24,7 @@ use kesf::analytical::von_karman::VonKarmanPlate;
 use kesf::analytical::{Plate, elastica};
 use kesf::characterise::FabricSheet;
 use kesf::constitutive::Constitutive;
-use kesf::report::cards::{Material, Target, card, named};
+use kesf::report::cards::{CardInput, Target, card, named};
 use kesf::section::ShellSection;
 use kesf::{characterise, constitutive, instrument};
 
@@ -268,7 +268,7 @@ impl Program {
     fn answers(&self, section: &ShellSection, problems: &[&str]) -> Result<Answers, String> {
         let (sheet, made) = poplin();
         let made = Constitutive { section: section.clone(), ..made };
-        let material = Material { sheet: &sheet, made: &made, stamp: None, crimp: None };
+        let material = CardInput { sheet: &sheet, made: &made, stamp: None, crimp: None };
         let folder = tempfile::tempdir().unwrap();
         let written = |target: Target| {
             let file = folder.path().join(format!("card.{}", target.ending));
@@ -459,7 +459,7 @@ fn shipped(target: &str) -> Vec<String> {
         let sheet = characterise::characterise(measured, &Default::default());
         let made = constitutive::section(&sheet, &Default::default()).ok()?;
         let material =
-            Material { sheet: &sheet, made: &made, stamp: Some("2026-01-02T03:04:05Z"), crimp: None };
+            CardInput { sheet: &sheet, made: &made, stamp: Some("2026-01-02T03:04:05Z"), crimp: None };
         Some(card(named(target).unwrap(), &material).unwrap().text)
     };
     let cards: Vec<String> = batch.fabrics.iter().filter_map(card_of).collect();

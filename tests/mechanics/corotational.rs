@@ -5,7 +5,7 @@
 //! Reference: central differences with step h; their error is about ε/h + h² (ε = 1e-16), so 1e-10
 //! relative for h = 1e-5. Statements of invariance hold to rounding.
 
-use kesf::element::corotational::{Motion, Reference};
+use kesf::element::corotational::{Motion, ReferenceFrame};
 use kesf::element::{Drilling, Formulation, Matrix24, Prepared, Vector24};
 use kesf::section::ShellSection;
 use nalgebra::{Matrix2, Matrix3, Point3, UnitQuaternion, Vector3};
@@ -57,12 +57,12 @@ fn state(element: &Prepared, amplitude: f64, rng: &mut Pcg64) -> Nodes {
     turned(&displaced(&rest(element), &step), &q, &random(rng, 5.0))
 }
 
-fn energy(reference: &Reference, k: &Matrix24, (x, r): &Nodes) -> f64 {
+fn energy(reference: &ReferenceFrame, k: &Matrix24, (x, r): &Nodes) -> f64 {
     let d = Motion::of(reference, x, r).deformation;
     0.5 * d.dot(&(k * d))
 }
 
-fn force(reference: &Reference, k: &Matrix24, (x, r): &Nodes) -> Vector24 {
+fn force(reference: &ReferenceFrame, k: &Matrix24, (x, r): &Nodes) -> Vector24 {
     let motion = Motion::of(reference, x, r);
     motion.force(&(k * motion.deformation))
 }
@@ -78,7 +78,7 @@ fn both() -> [Prepared; 2] {
 fn rigid_motions_of_any_size_cost_nothing() {
     let mut rng = Pcg64::seed_from_u64(1);
     for element in both() {
-        let (reference, k) = (Reference::of(&element.frame), element.local_stiffness());
+        let (reference, k) = (ReferenceFrame::of(&element.frame), element.local_stiffness());
         for size in [1e-6, 0.1, 1.0, 1.8] {
             let q = UnitQuaternion::from_scaled_axis(random(&mut rng, size));
             let nodes = turned(&rest(&element), &q, &random(&mut rng, 10.0));
@@ -93,7 +93,7 @@ fn rigid_motions_of_any_size_cost_nothing() {
 fn at_rest_the_tangent_is_the_linear_stiffness() {
     for element in both() {
         let (x, r) = rest(&element);
-        let motion = Motion::of(&Reference::of(&element.frame), &x, &r);
+        let motion = Motion::of(&ReferenceFrame::of(&element.frame), &x, &r);
         let tangent = motion.tangent(&element.local_stiffness(), &Vector24::zeros());
         assert!((tangent - element.stiffness()).norm() < 1e-14 * tangent.norm());
     }
@@ -103,7 +103,7 @@ fn at_rest_the_tangent_is_the_linear_stiffness() {
 fn the_force_is_the_gradient_of_the_energy() {
     let mut rng = Pcg64::seed_from_u64(2);
     for element in both() {
-        let (reference, k) = (Reference::of(&element.frame), element.local_stiffness());
+        let (reference, k) = (ReferenceFrame::of(&element.frame), element.local_stiffness());
         for amplitude in [0.01, 0.1, 0.3] {
             let nodes = state(&element, amplitude, &mut rng);
             let f = force(&reference, &k, &nodes);
@@ -118,7 +118,7 @@ fn the_force_is_the_gradient_of_the_energy() {
     }
 }
 
-fn difference_of_force(reference: &Reference, k: &Matrix24, nodes: &Nodes) -> Matrix24 {
+fn difference_of_force(reference: &ReferenceFrame, k: &Matrix24, nodes: &Nodes) -> Matrix24 {
     let mut tangent = Matrix24::zeros();
     for i in 0..24 {
         let step = Vector24::ith(i, 1e-5);
@@ -133,7 +133,7 @@ fn difference_of_force(reference: &Reference, k: &Matrix24, nodes: &Nodes) -> Ma
 fn the_exact_tangent_is_the_derivative_of_the_force() {
     let mut rng = Pcg64::seed_from_u64(3);
     for element in both() {
-        let (reference, k) = (Reference::of(&element.frame), element.local_stiffness());
+        let (reference, k) = (ReferenceFrame::of(&element.frame), element.local_stiffness());
         for amplitude in [0.01, 0.1, 0.3] {
             let nodes = state(&element, amplitude, &mut rng);
             let motion = Motion::of(&reference, &nodes.0, &nodes.1);
@@ -153,7 +153,7 @@ fn the_exact_tangent_is_the_derivative_of_the_force() {
 fn the_rate_of_deformation_is_its_derivative() {
     let mut rng = Pcg64::seed_from_u64(4);
     let element = element(Formulation::default());
-    let (reference, k) = (Reference::of(&element.frame), element.local_stiffness());
+    let (reference, k) = (ReferenceFrame::of(&element.frame), element.local_stiffness());
     let nodes = state(&element, 0.3, &mut rng);
     let step = Vector24::from_fn(|_, _| rng.random_range(-1e-5..1e-5));
     let at = |(x, r): Nodes| Motion::of(&reference, &x, &r).deformation;
@@ -167,7 +167,7 @@ fn the_rate_of_deformation_is_its_derivative() {
 fn forces_turn_with_the_element() {
     let mut rng = Pcg64::seed_from_u64(5);
     let element = element(Formulation::default());
-    let (reference, k) = (Reference::of(&element.frame), element.local_stiffness());
+    let (reference, k) = (ReferenceFrame::of(&element.frame), element.local_stiffness());
     let nodes = state(&element, 0.2, &mut rng);
     let q = UnitQuaternion::from_scaled_axis(random(&mut rng, 2.0));
     let (before, after) =

@@ -11,7 +11,7 @@
 
 use std::ops::ControlFlow;
 
-use kesf::element::corotational::{Motion, Reference};
+use kesf::element::corotational::{Motion, ReferenceFrame};
 use kesf::element::{
     Cellwise, Drilling, Formulation, Gradient, Matrix24, Prepared, Strains, Vector24, YarnStrain, Yarns,
 };
@@ -134,7 +134,7 @@ impl Element {
 fn force_and_tangent_are_derivatives_of_the_potential() {
     let mut rng = Pcg64::seed_from_u64(7);
     let element = quad(1e-3, Drilling::Scaled);
-    let reference = Reference::of(&element.frame);
+    let reference = ReferenceFrame::of(&element.frame);
     let (law, frame) = (friction(), &element.frame);
     let rest = [0, 1, 2, 3].map(|i| {
         let [x, y] = frame.xy[i];

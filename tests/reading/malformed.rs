@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use kesf::characterise::{Settings, characterise};
 use kesf::finding::{Finding, explain, explanations};
-use kesf::instrument::{Problem, ReadSettings, read_fabrics};
+use kesf::instrument::{ReadProblem, ReadSettings, read_fabrics};
 
 /// Code, input below tests/malformed, and the place, below it too.
 const CASES: &[(&str, &str, &str)] = &[
@@ -181,7 +181,7 @@ fn every_code_has_an_explanation_and_a_file() {
     let tested: BTreeSet<&str> =
         CASES.iter().map(|c| c.0).chain(NOT_FROM_FILES.iter().map(|c| c.0)).collect();
     assert_eq!(explained, tested);
-    assert!(Problem::CODES.iter().all(|c| explained.contains(c)));
+    assert!(ReadProblem::CODES.iter().all(|c| explained.contains(c)));
 }
 
 /// One bad file among good ones costs that file only.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use kesf::characterise::{FabricSheet, characterise};
 use kesf::constitutive::{Assumptions, Constitutive, section};
 use kesf::instrument::{ReadSettings, read_fabrics};
-use kesf::report::cards::{EXPORTERS, Material, card, read::section_in};
+use kesf::report::cards::{CardInput, EXPORTERS, card, read::section_in};
 use kesf::report::json::{section_document, sheet_document, text};
 use kesf::report::read_back::{self, ReadDocument};
 
@@ -107,7 +107,7 @@ fn document_holds(bytes: &[u8]) -> bool {
 fn cards_of(wanted: impl Fn(&str) -> bool) -> Vec<String> {
     let mut texts = Vec::new();
     for (sheet, made) in &fabrics() {
-        let material = Material { sheet, made, stamp: None, crimp: None };
+        let material = CardInput { sheet, made, stamp: None, crimp: None };
         let exporters = EXPORTERS.iter().filter(|e| wanted(e.name));
         texts.extend(exporters.filter_map(|e| Some(card(e, &material).ok()?.text)));
     }
@@ -133,7 +133,7 @@ fn card_holds(bytes: &[u8]) -> bool {
         findings: Vec::new(),
     };
     let sheet = FabricSheet::default();
-    let material = Material { sheet: &sheet, made: &made, stamp: None, crimp: None };
+    let material = CardInput { sheet: &sheet, made: &made, stamp: None, crimp: None };
     let abaqus = EXPORTERS.iter().find(|e| e.name == "abaqus").expect("a card of Abaqus");
     let text = card(abaqus, &material).expect("a card").text;
     let again = section_in(&text, stated.section.thickness)

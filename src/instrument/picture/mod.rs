@@ -22,7 +22,7 @@ use imageproc::filter::gaussian_blur_f32;
 pub use disc::Circle;
 pub(crate) use raster::decoded;
 
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use crate::finding::Place;
 use crate::platform::files;
 use crate::quantity::{polygon_area, polygon_centre};
@@ -56,7 +56,7 @@ const SMALLEST: u32 = 40;
 /// R001 if the file cannot be read, and those of [`silhouette`].
 pub fn read_silhouette(path: &Path) -> Result<(Silhouette, Vec<u8>), ReadError> {
     let at = |problem| ReadError::new(Place::file(path), problem);
-    let bytes = files::read(path).map_err(|e| at(Problem::Unreadable { reason: e.to_string() }))?;
+    let bytes = files::read(path).map_err(|e| at(ReadProblem::Unreadable { reason: e.to_string() }))?;
     Ok((silhouette(&bytes).map_err(at)?, bytes))
 }
 
@@ -64,15 +64,15 @@ pub fn read_silhouette(path: &Path) -> Result<(Silhouette, Vec<u8>), ReadError> 
 ///
 /// # Errors
 /// R024 if it cannot be decoded, R025 if there is no sheet.
-pub fn silhouette(bytes: &[u8]) -> Result<Silhouette, Problem> {
-    let raster = Raster::decode(bytes).map_err(|reason| Problem::BadPicture { reason })?;
+pub fn silhouette(bytes: &[u8]) -> Result<Silhouette, ReadProblem> {
+    let raster = Raster::decode(bytes).map_err(|reason| ReadProblem::BadPicture { reason })?;
     if raster.size.iter().any(|n| *n < SMALLEST) {
         let reason = format!("{} x {} pixels are too few", raster.size[0], raster.size[1]);
-        return Err(Problem::NoSheet { reason });
+        return Err(ReadProblem::NoSheet { reason });
     }
     let noise = noise(&raster.colours);
     let found = found(&raster.colours, noise);
-    let nothing = || Problem::NoSheet { reason: "nothing stands out from the background".into() };
+    let nothing = || ReadProblem::NoSheet { reason: "nothing stands out from the background".into() };
     let Found { colours, edge, others, remaining_noise } = found.ok_or_else(nothing)?;
     let radius = (polygon_area(&edge.outline).abs() / PI).sqrt();
     let disc = disc::disc(&colours, &edge.depth, (polygon_centre(&edge.outline), radius), remaining_noise);

@@ -3,7 +3,7 @@
 use super::Table;
 use crate::instrument::Parameter;
 use crate::instrument::cell::parts;
-use crate::instrument::error::{Problem, ReadError};
+use crate::instrument::error::{ReadError, ReadProblem};
 use crate::instrument::raw::Row;
 use crate::instrument::sniff::Number;
 use crate::instrument::unit_text::{is_percent, known_unit};
@@ -44,8 +44,8 @@ impl Table<'_, '_> {
                 let (unit, percent_deviation) = (parts.unit, parts.percent_deviation);
                 return Ok(Reading { mean, sd, unit, percent_deviation });
             }
-            Printed::Plain(Number::NotFinite, _) => Problem::NotFinite { found: cell.to_string() },
-            _ => Problem::NotANumber { found: cell.to_string(), decimal: self.context.decimal },
+            Printed::Plain(Number::NotFinite, _) => ReadProblem::NotFinite { found: cell.to_string() },
+            _ => ReadProblem::NotANumber { found: cell.to_string(), decimal: self.context.decimal },
         };
         Err(self.context.error(row.line, row.column(index), problem))
     }

@@ -8,7 +8,7 @@ use super::{Datum, Own, Table};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::cell::parts;
 use crate::instrument::dialect::{Statistic, TableColumn};
-use crate::instrument::error::{Problem, ReadError};
+use crate::instrument::error::{ReadError, ReadProblem};
 use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
@@ -119,7 +119,7 @@ impl Table<'_, '_> {
         let negative: Vec<_> = negative.map(|d| (d.fabric.clone(), d.parameter, d.line, d.column)).collect();
         for (fabric, parameter, line, column) in negative {
             let found = format!("the standard deviation of {parameter} is negative");
-            self.leave_out(fabric, self.context.error(line, column, Problem::BadTable { found }))?;
+            self.leave_out(fabric, self.context.error(line, column, ReadProblem::BadTable { found }))?;
         }
         Ok(())
     }

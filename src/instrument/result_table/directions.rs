@@ -9,7 +9,7 @@ use super::{Datum, Own, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::contradictions::more_than_direction;
 use crate::instrument::curves::across_in_name;
-use crate::instrument::dialect::{Key as HeaderKey, TableColumn};
+use crate::instrument::dialect::{HeaderKey, TableColumn};
 use crate::instrument::error::ReadError;
 use crate::instrument::raw::Row;
 use crate::instrument::vocabulary::Vocabulary;

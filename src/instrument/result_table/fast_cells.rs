@@ -2,7 +2,7 @@
 
 use super::{Table, Values};
 use crate::finding::{Finding, Place, ReadFact};
-use crate::instrument::error::{Problem, ReadError};
+use crate::instrument::error::{ReadError, ReadProblem};
 use crate::instrument::fast::FastValue;
 use crate::instrument::unit_text::known_unit;
 use crate::instrument::{Direction, Parameter, ResultValue, StatedStiffness};
@@ -31,11 +31,11 @@ impl Table<'_, '_> {
         let error = |problem| self.context.error(line, column, problem);
         let (of, expected) = (value.symbol().to_string(), value.unit());
         let Some(text) = text else {
-            return Err(error(Problem::UnitMissing { found: of, expected }));
+            return Err(error(ReadProblem::UnitMissing { found: of, expected }));
         };
         let unit = known_unit(text).map_err(error)?;
         if unit.dimension != known_unit(value.unit()).map_err(error)?.dimension {
-            return Err(error(Problem::UnitWrong { found: text.to_string(), of, expected }));
+            return Err(error(ReadProblem::UnitWrong { found: text.to_string(), of, expected }));
         }
         Ok(unit)
     }

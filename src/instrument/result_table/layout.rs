@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::heads::{Heads, is_units};
 use crate::instrument::Direction;
 use crate::instrument::dialect::{Statistic, TableColumn};
-use crate::instrument::error::{Problem, ReadError};
+use crate::instrument::error::{ReadError, ReadProblem};
 use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
@@ -115,7 +115,9 @@ impl Layout {
         layout.settle(&heads, region, context);
         let indices = layout.values.iter().map(|c| c.index).chain(layout.sd_column);
         match indices.into_iter().find_map(|i| heads.two_units(i)) {
-            Some((found, (line, column))) => Err(context.error(line, column, Problem::BadTable { found })),
+            Some((found, (line, column))) => {
+                Err(context.error(line, column, ReadProblem::BadTable { found }))
+            }
             None => Ok(layout),
         }
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::counting::counts;
 use super::layout::{Column, LabelColumn, Layout};
 use crate::instrument::Parameter;
-use crate::instrument::dialect::{Key, Statistic, TableColumn};
+use crate::instrument::dialect::{HeaderKey, Statistic, TableColumn};
 use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
@@ -120,7 +120,7 @@ impl Layout {
     pub(super) fn name_sides(&mut self, sample: Option<&str>, context: &Context<'_>) {
         let Some(sample) = sample else { return };
         let names = self.values.iter_mut().filter_map(|c| c.fabric.as_mut());
-        for side in names.filter(|name| context.vocabulary.key(name) == Some(Key::Remark)) {
+        for side in names.filter(|name| context.vocabulary.key(name) == Some(HeaderKey::Remark)) {
             *side = format!("{sample} {side}");
         }
     }
@@ -134,7 +134,7 @@ impl Layout {
             return;
         }
         for label in self.labels.iter_mut().filter(|l| is_name(l)) {
-            let may_count = context.vocabulary.key(&label.name) == Some(Key::Specimen);
+            let may_count = context.vocabulary.key(&label.name) == Some(HeaderKey::Specimen);
             if may_count && counts(&cells(region, label.index).collect::<Vec<_>>()) {
                 label.meta = Some(TableColumn::Specimen);
             }

@@ -10,7 +10,7 @@ use super::{Contents, Datum, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::cell::parts;
 use crate::instrument::dialect::{Statistic, TableColumn};
-use crate::instrument::error::{Problem, ReadError};
+use crate::instrument::error::{ReadError, ReadProblem};
 use crate::instrument::facets::Facets;
 use crate::instrument::raw::Row;
 use crate::instrument::sniff::Number;
@@ -234,7 +234,7 @@ impl<'t> Table<'t, '_> {
         out.retain(|(fabric, _)| !self.is_left_out(fabric));
         if out.is_empty() && self.failures.is_empty() {
             let found = "the table has no value of a KES parameter".to_string();
-            return Err(self.context.error(self.layout.line, 0, Problem::BadTable { found }));
+            return Err(self.context.error(self.layout.line, 0, ReadProblem::BadTable { found }));
         }
         self.findings.extend(states.into_iter().map(|((_, column), state)| state.finding(column)));
         self.ignored.extend(unread);
@@ -311,7 +311,7 @@ impl<'t> Table<'t, '_> {
         let place = |d: &Datum| Place::at(self.context.path, d.line, d.column);
         let twice = |d: &Datum| {
             let found = format!("{parameter} is given twice (first in line {})", first.line);
-            ReadError::new(place(d), Problem::BadTable { found })
+            ReadError::new(place(d), ReadProblem::BadTable { found })
         };
         let mut kept: Vec<Datum> = Vec::new();
         let mut numbers = BTreeSet::new();

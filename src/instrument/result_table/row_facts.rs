@@ -1,7 +1,7 @@
 //! What the labels of a row say of its values.
 
 use crate::instrument::condition;
-use crate::instrument::error::Problem;
+use crate::instrument::error::ReadProblem;
 use crate::instrument::facets::Facets;
 use crate::instrument::sniff::{Number, number};
 use crate::instrument::unit_text::unit;
@@ -98,6 +98,6 @@ impl RowFacts {
 }
 
 /// R018 of a text that stands where a direction should.
-pub(super) fn no_direction(text: &str) -> Problem {
-    Problem::BadTable { found: format!("{text:?} is not a direction (warp, weft, bias or mean)") }
+pub(super) fn no_direction(text: &str) -> ReadProblem {
+    ReadProblem::BadTable { found: format!("{text:?} is not a direction (warp, weft, bias or mean)") }
 }

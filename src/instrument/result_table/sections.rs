@@ -6,7 +6,7 @@ use super::Table;
 use super::layout::NAME;
 use super::row_facts::Title;
 use crate::instrument::Direction;
-use crate::instrument::dialect::{Key, TableColumn};
+use crate::instrument::dialect::{HeaderKey, TableColumn};
 use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
@@ -60,7 +60,7 @@ impl Table<'_, '_> {
             .iter()
             .enumerate()
             .any(|(i, (.., names))| below[..i].iter().any(|(.., before)| !names.is_disjoint(before)));
-        let is_named = self.header.known.contains_key(&Key::Sample) || self.layout.names_fabrics();
+        let is_named = self.header.known.contains_key(&HeaderKey::Sample) || self.layout.names_fabrics();
         let holds_names = matches!(first.meta, Some(TableColumn::Id | TableColumn::Fabric));
         let title: fn(String) -> Title = match (counts, self.layout.down) {
             (true, _) => Title::Fabric,

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{RowFacts, Table};
-use crate::instrument::error::{Problem, ReadError};
+use crate::instrument::error::{ReadError, ReadProblem};
 use crate::instrument::raw::Row;
 use crate::instrument::sniff::{Number, number};
 
@@ -52,7 +52,7 @@ impl Table<'_, '_> {
             let found = format!(
                 "{name:?} stands where other rows have the name of the fabric: the cells of the row are shifted"
             );
-            let error = self.context.error(row.line, row.column(0), Problem::BadTable { found });
+            let error = self.context.error(row.line, row.column(0), ReadProblem::BadTable { found });
             self.leave_out(facts.fabric.clone(), error)?;
         }
         Ok(out)

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Datum, Table};
 use crate::finding::{Finding, Place, ReadFact};
-use crate::instrument::dialect::Key as HeaderKey;
+use crate::instrument::dialect::HeaderKey;
 use crate::instrument::states::told_apart;
 use crate::kes::Key;
 

@@ -3,7 +3,7 @@
 use super::layout::{self, Column};
 use super::{RowFacts, Table};
 use crate::instrument::Parameter;
-use crate::instrument::error::{Problem, ReadError};
+use crate::instrument::error::{ReadError, ReadProblem};
 use crate::instrument::raw::Row;
 use crate::instrument::unit_text::{is_angular, is_per_length, known_unit};
 use crate::quantity::Unit;
@@ -19,7 +19,7 @@ impl Table<'_, '_> {
     ) -> Result<(), ReadError> {
         match (first, second) {
             (Some(first), Some(second)) if layout::differ(first, second) => {
-                let problem = Problem::BadTable { found: layout::two_units(first, second) };
+                let problem = ReadProblem::BadTable { found: layout::two_units(first, second) };
                 Err(self.context.error(row.line, row.column(index), problem))
             }
             _ => Ok(()),
@@ -47,7 +47,7 @@ impl Table<'_, '_> {
             _ if p.kes_unit() == "1" || self.context.kes_units => p.kes_unit(),
             _ => {
                 let found = p.symbol().to_string();
-                return Err(error(Problem::UnitMissing { found, expected: p.kes_unit() }));
+                return Err(error(ReadProblem::UnitMissing { found, expected: p.kes_unit() }));
             }
         };
         let unit = known_unit(text).map_err(error)?;
@@ -60,7 +60,7 @@ impl Table<'_, '_> {
         if unit.dimension != expected.dimension || per_angle || undivided || angle {
             let of = p.symbol().to_string();
             let expected = p.kes_unit();
-            return Err(error(Problem::UnitWrong { found: text.to_string(), of, expected }));
+            return Err(error(ReadProblem::UnitWrong { found: text.to_string(), of, expected }));
         }
         Ok(unit)
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::text::{number, preamble, set};
 use crate::section::ShellSection;
 
@@ -18,7 +18,7 @@ pub static EXPORTER: Exporter = Exporter {
 /// Abaqus, Keywords Guide, `*SHELL GENERAL SECTION`: the symmetric half of the 6 × 6 stiffness by columns, eight
 /// numbers a line, of `[N11, N22, N12, M11, M22, M12]` over `[ε11, ε22, γ12, κ11, κ22, κ12]` with the engineering
 /// twist `κ12`; DENSITY is mass per area. `*TRANSVERSE SHEAR STIFFNESS`: K11, K22, K12.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let name = set(material);
     let note = "Turn the local axes of *ORIENTATION to the warp of your part, and give the set its elements.";
     let mut text = preamble(material, "**", &[note.into()]);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Constants, Property, no_place};
 use super::text::{number, preamble_of, set};
 use crate::characterise::{FabricSheet, mean_branches};
@@ -35,7 +35,7 @@ pub(super) struct Response {
 /// without DIRECTION the response is nonlinear elastic, and data to one side only count for both. Component 1 is given the warp (Abaqus
 /// calls its two yarns fill and warp in that order; the orientation decides which is which). The shear strain is the change of the
 /// angle between the yarns (rad).
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let (name, thickness) = (set(material), section.thickness);
     let responses = responses(material.sheet, section);
     let mut notes = vec![

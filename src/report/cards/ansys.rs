@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use nalgebra::Matrix3;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::laminate::NO_STIFFNESS;
 use super::text::{label, number, preamble};
 use crate::section::ShellSection;
@@ -20,7 +20,7 @@ pub static EXPORTER: Exporter = Exporter {
 
 /// Ansys, Mechanical APDL Command Reference: the symmetric lower parts of A, D and E by columns; the density of a
 /// preintegrated section is that of unit thickness, mass per area. The stiffness must be positive definite.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     if section.d_b.cholesky().is_none() {
         return Err(CardError::Stiffness { program: "Ansys", reason: NO_STIFFNESS });
     }

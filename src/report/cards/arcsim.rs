@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Constants, Property, no_place};
 use super::text::provenance;
 use crate::report::json;
@@ -28,7 +28,7 @@ const CURVATURES: usize = 5;
 /// `stretching` holds, and `physics.cpp` has the energies `½ A (k11 ε11² + 2 k12 ε11 ε22 + k22 ε22² + k33 ε12²)`
 /// with the tensor's ε12, and `¼ k (l²/2A) θ²` of a hinge of length l, A the area of both triangles: `c = D/2`,
 /// `c33 = 2 D33`, and on squares and equilateral triangles `k = 4 B`. A hinge along the warp resists bending along the weft.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let (d_m, d_b) = (&section.d_m, &section.d_b);
     let c = Constants::of(section);
     let [warp, weft] = c.yarns;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Constants, Property, Yarn, lost, no_place};
 use super::text::{label, number, preamble};
 use crate::section::ShellSection;
@@ -87,7 +87,7 @@ if __name__ == "__main__":
     build()
 "#;
 
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let c = Constants::of(section);
     let notes = [
         "Run it in Blender's text editor, or with blender --python. It adds two strips; settings() sets any cloth \

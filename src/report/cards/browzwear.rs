@@ -10,7 +10,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Constants, Property, no_place};
 use super::text::provenance;
 use crate::report::json::text;
@@ -30,7 +30,7 @@ pub static EXPORTER: Exporter = Exporter {
 const DYN_CM: f64 = 1e-7;
 
 /// `raw_data` is what the FAB recorded, and must be null without: KES has other tests.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let c = Constants::of(section);
     let [warp, weft] = c.yarns;
     let along = |length: f64, width: f64| json!({"length": number(length), "width": number(width)});

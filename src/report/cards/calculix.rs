@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use nalgebra::Matrix3;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::plane_stress;
 use super::laminate::laminate;
 use super::text::{number, preamble, set};
@@ -21,7 +21,7 @@ pub static EXPORTER: Exporter = Exporter {
 };
 
 /// CalculiX has no general section: a [`super::Laminate`], which S8R elements take.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let layers = laminate("CalculiX", section)?;
     let name = set(material);
     let notes = [

@@ -17,11 +17,11 @@ pub struct Exporter {
     /// What the material model of the program can and cannot hold of a section.
     pub holds: &'static str,
     /// Writes the card of a material with a checked section.
-    pub(super) write: fn(&Material<'_>, &ShellSection) -> Result<Card, CardError>,
+    pub(super) write: fn(&CardInput<'_>, &ShellSection) -> Result<Card, CardError>,
 }
 
 impl Exporter {
-    /// Whether the card depends on [`Material::crimp`].
+    /// Whether the card depends on [`CardInput::crimp`].
     pub fn asks_for_crimp(&self) -> bool {
         self.name == "radioss-fabric-a"
     }
@@ -80,7 +80,7 @@ errors! {
 
 /// A fabric with its section, as it is handed over.
 #[derive(Clone, Copy, Debug)]
-pub struct Material<'a> {
+pub struct CardInput<'a> {
     /// Its parameters.
     pub sheet: &'a FabricSheet,
     /// Its section, with the assumptions.
@@ -92,7 +92,7 @@ pub struct Material<'a> {
     pub crimp: Option<[f64; 2]>,
 }
 
-impl Material<'_> {
+impl CardInput<'_> {
     /// Whether a value is a stand-in: it is no property of the material, and formats that describe one leave it out.
     pub(super) fn is_assumed(&self, name: &str) -> bool {
         self.made.used.iter().any(|u| u.name == name && u.provenance == Provenance::Assumed)

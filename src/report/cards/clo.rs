@@ -10,7 +10,7 @@
 
 use std::fmt::Write as _;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Constants, Property, no_place};
 use super::swatch::swatch;
 use super::text::{label, number, preamble};
@@ -33,7 +33,7 @@ const G_MM2_PER_S2: f64 = 1e-9;
 /// A unit of density (kg/m²).
 const G_PER_MM2: f64 = 1e3;
 
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let c = Constants::of(section);
     let [warp, weft] = c.yarns;
     let d_b = &section.d_b;

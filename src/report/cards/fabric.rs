@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::text::provenance;
 use crate::characterise::SpecimenResult;
 use crate::report::json::{section_document, sheet_document, text};
@@ -19,9 +19,9 @@ pub static EXPORTER: Exporter = Exporter {
 };
 
 /// The schema is `docs/schemas/open-fabric.json`.
-fn write(material: &Material<'_>, _: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, _: &ShellSection) -> Result<Card, CardError> {
     let wrong = |e: serde_json::Error| CardError::Json { program: "kesf.fabric/1", reason: e.to_string() };
-    let Material { sheet, made, stamp, .. } = *material;
+    let CardInput { sheet, made, stamp, .. } = *material;
     let section = section_document([(sheet, made)]);
     let mut parameters = serde_json::to_value(sheet_document([sheet], None)).map_err(wrong)?;
     file_names(&mut parameters);

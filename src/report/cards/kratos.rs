@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Property, no_place, plane_stress};
 use super::laminate::laminate;
 use super::text::provenance;
@@ -21,7 +21,7 @@ pub static EXPORTER: Exporter = Exporter {
 
 /// Kratos StructuralMechanicsApplication, `SHELL_ORTHOTROPIC_LAYERS`: a row for each layer of thickness, angle (deg),
 /// density, E1, E2, ν12, G12, G13, G23; the law is in the ConstitutiveLawsApplication.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let layers = laminate("Kratos", section)?;
     let density = section.areal_density / layers.thickness;
     let [g13, g23] = [0, 1].map(|i| section.d_s[(i, i)] / layers.thickness);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Property, no_place};
 use super::swatch::{Swatch, clamped};
 use super::text::{number, preamble};
@@ -23,7 +23,7 @@ const BETWEEN: f64 = 0.02;
 
 /// Kratos, `ModelPartIO`: blocks of properties, nodes (Id X Y Z), elements (Id property nodes) and sub-model parts with the
 /// Ids of theirs; `//` begins a comment. Elements begin with a side along x, which is the warp: Kratos takes it for axis 1.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let notes = [
         "A mesh without materials: read it into a model part called Structure (ModelPartIO), then the file of `kesf export \
          --to kratos`, which gives Structure.sheet its layers.",

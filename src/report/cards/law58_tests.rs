@@ -224,7 +224,7 @@ fn fabric(sheet: &FabricSheet, section: &ShellSection) -> Fabric {
 
 fn of_poplin(crimp: Option<[f64; 2]>) -> (Fabric, String, Vec<Finding>) {
     let (sheet, made) = poplin();
-    let material = Material { sheet: &sheet, made: &made, stamp: None, crimp };
+    let material = CardInput { sheet: &sheet, made: &made, stamp: None, crimp };
     let card = card(named("radioss-fabric-a").unwrap(), &material).unwrap();
     (fabric(&sheet, &made.section), card.text, card.findings)
 }
@@ -302,12 +302,12 @@ fn a_section_without_contraction_is_written() {
     (s.d_m[(0, 1)], s.d_m[(1, 0)]) = (0.0, 0.0);
     let law = read(&written("radioss-fabric-a", s.clone()).unwrap());
     let apart = constitutive(s);
-    let material = Material { sheet: &sheet(), made: &apart, stamp: None, crimp: None };
+    let material = CardInput { sheet: &sheet(), made: &apart, stamp: None, crimp: None };
     let findings = card(named("radioss-fabric-a").unwrap(), &material).unwrap().findings;
     assert!(!findings.iter().any(|f| f.message().to_string().contains("Poisson")), "{findings:?}");
     assert!(law.strip(0, 1, 1e-3)[1].abs() < 1e-9 && law.flex.iter().all(|f| f.is_finite()), "{law:?}");
     let made = constitutive(section());
-    let material = Material { sheet: &sheet(), made: &made, stamp: None, crimp: None };
+    let material = CardInput { sheet: &sheet(), made: &made, stamp: None, crimp: None };
     let findings = card(named("radioss-fabric-a").unwrap(), &material).unwrap().findings;
     assert!(
         !findings.iter().any(|f| f.code() == "O043" && f.message().to_string().contains("Poisson")),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Constants, Property, no_place};
 use super::text::{label, preamble};
 use crate::section::ShellSection;
@@ -32,7 +32,7 @@ pub static EXPORTER: Exporter = Exporter {
 /// PRBA is the contraction of b over the stretch of its own: `PRBA = ν21`, `PRAB = ν12`. FORM = 14 without curves is
 /// linear and keeps the angle between the yarns; CSE = 0 lets the fabric bear compression in its plane.
 /// `*SECTION_SHELL`: ELFORM 9 is a fully integrated membrane; its thickness only divides what the material multiplies.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let c = Constants::of(section);
     let t = section.thickness;
     let [nu12, nu21] = [section.d_m[(0, 1)] / section.d_m[(1, 1)], section.d_m[(0, 1)] / section.d_m[(0, 0)]];

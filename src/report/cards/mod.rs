@@ -64,7 +64,7 @@ mod usd_drape;
 use crate::section::ShellSection;
 use constants::hysteresis;
 
-pub use card::{Card, CardError, Exporter, Material, Target};
+pub use card::{Card, CardError, CardInput, Exporter, Target};
 pub use laminate::{Laminate, laminate};
 pub use usd_drape::{DrapedSheet, draped};
 
@@ -174,7 +174,7 @@ pub fn targets<S: AsRef<str>>(names: &[S]) -> Vec<Target> {
 ///
 /// # Errors
 /// See [`CardError`].
-pub fn card(target: Target, material: &Material<'_>) -> Result<Card, CardError> {
+pub fn card(target: Target, material: &CardInput<'_>) -> Result<Card, CardError> {
     let section = material.made.section.clone().checked()?;
     if let Some(value) = beyond_cards(&section) {
         return Err(CardError::Range { value });

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Constants, Property, Yarn, lost, no_place};
 use super::swatch::{SIDE, Swatch, cell, swatch};
 use super::text::{number, provenance, wrapped};
@@ -34,7 +34,7 @@ fn elasticity(yarn: Yarn, poisson: f64) -> [f64; 2] {
 
 /// MuJoCo, XML reference, `flexcomp`: `young` (Pa), `poisson`, `thickness` (m) of `elasticity`, `mass` of all; bending
 /// of the cotangent operator with `E t³ / (12 (1 - ν²))`, see [`super::swatch`].
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let constants = Constants::of(section);
     let poisson = constants.poisson.clamp(0.0, POISSON_LIMIT);
     let mean = elasticity(constants.mean(), poisson);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::plane_stress;
 use super::text::preamble;
 use crate::section::ShellSection;
@@ -21,7 +21,7 @@ pub static EXPORTER: Exporter = Exporter {
 /// NU12, G12, G1Z, G2Z, RHO) in large fields: 8 columns for the name, 16 for each of four values, 8 for the
 /// continuation. With 12I/T³ = 1 the moments are `G2 T³/12` times the curvatures, with TS/T = 1 the shear forces
 /// `G3 T`. The mass is non-structural: NSM is mass per area.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     if section.d_b.cholesky().is_none() {
         let reason = super::laminate::NO_STIFFNESS;
         return Err(CardError::Stiffness { program: "Nastran", reason });

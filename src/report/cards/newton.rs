@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Constants, Property, lost, no_place};
 use super::text::provenance;
 use crate::report::json;
@@ -29,7 +29,7 @@ const WITHIN_COLUMN: f64 = 0.25;
 
 /// newton, `newton.solvers.style3d.add_cloth_mesh`: `tri_aniso_ke` (weft, warp, shear) in N/m, `edge_aniso_ke` in N·m;
 /// a hinge along the angle φ of its panel has `k0 sin¹²φ + k1 cos¹²φ + 4 k2 sin²φ cos²φ`. Panel x is the weft, y the warp.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let c = Constants::of(section);
     let [warp, weft] = c.yarns;
     // On squares a diagonal hinge has 3 k (2 w,xy)² / 2, one within a column 3 k1 w,xy² / 2, and the sheet

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use nalgebra::{Matrix3, SymmetricEigen};
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Property, no_place, plane_stress};
 use super::laminate::NO_STIFFNESS;
 use super::text::{number, preamble};
@@ -52,7 +52,7 @@ fn layers(section: &ShellSection) -> Result<Layers, CardError> {
     Ok(Layers { outer_thickness, core_thickness, outer, core })
 }
 
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let l = layers(section)?;
     let notes = [
         "The layers are no cloth: together, each integrated at its middle as OpenSees does, they have its D_m, D_b \

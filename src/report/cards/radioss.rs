@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Constants, Property, no_place};
 use super::text::{label, number, preamble};
 use crate::section::ShellSection;
@@ -33,7 +33,7 @@ pub static EXPORTER: Exporter = Exporter {
 ///
 /// with `/UNIT/unit_ID` (title; mass, length, time). NU12 is the contraction of 2 over the stretch of 1. R_E reduces
 /// stiffness in compression: 1 keeps it. What is left blank (zero stress, porosity, sensor) is off.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let c = Constants::of(section);
     let t = section.thickness;
     let nu12 = section.d_m[(0, 1)] / section.d_m[(1, 1)];

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::abaqus_fabric::responses;
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Property, no_place};
 use super::radioss::ONE_MODEL;
 use super::text::{label, number, preamble_of};
@@ -41,7 +41,7 @@ const PUSHED: f64 = 1e-6;
 /// over its nominal strain, which with [`NO_CRIMP`] are those of the cloth; function 3 is the shear stress over the change
 /// of the angle between the yarns in degrees. Every slope must be positive (messages 1581 to 1583 of the starter).
 /// FLEX, FLEX1 and FLEX2 (Pa) move the crimp, of which there is none: they are the default 1 that a zero stands for.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let thickness = section.thickness;
     let responses = responses(material.sheet, section);
     let mut notes = vec![

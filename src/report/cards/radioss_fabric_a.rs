@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::abaqus_fabric::{Response, responses};
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Constants, Property, hysteresis_of, lost, no_place};
 use super::crimp::Crimp;
 use super::radioss::ONE_MODEL;
@@ -52,7 +52,7 @@ const LINE: usize = 100;
 /// the crimp is `FLEX1 E1 H0/D0 + FLEX2 E2 H0'/D0'` ([`Crimp`]). The way back of a yarn is scaled to where it turned, so both functions
 /// begin at zero and end at one point (message 1716); every slope is positive (1581 to 1583). Functions 3 and 6 are the shear
 /// stress over the change of the angle between the yarns in degrees, to both sides.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let law = Law::of(material, section)?;
     let title = label(&material.sheet.name, 60);
     let mut text = preamble_of(material, "#", LAW, &notes(material, section.thickness, &law));
@@ -88,7 +88,7 @@ struct Law {
 
 impl Law {
     /// O046: a test whose record goes nowhere.
-    fn of(material: &Material<'_>, section: &ShellSection) -> Result<Self, CardError> {
+    fn of(material: &CardInput<'_>, section: &ShellSection) -> Result<Self, CardError> {
         let thickness = section.thickness;
         let responses = responses(material.sheet, section);
         let curves = responses.each_ref().map(|r| stresses(r, thickness));
@@ -155,7 +155,7 @@ fn across(section: &ShellSection) -> f64 {
     (section.d_s[(0, 0)] * section.d_s[(1, 1)]).max(0.0).sqrt()
 }
 
-fn findings(material: &Material<'_>, section: &ShellSection, law: &Law) -> Vec<Finding> {
+fn findings(material: &CardInput<'_>, section: &ShellSection, law: &Law) -> Vec<Finding> {
     let c = Constants::of(section);
     let modulus = (c.yarns[0].tensile * c.yarns[1].tensile).sqrt() / section.thickness;
     let poisson = [law.crimp.at_rest(modulus), c.poisson];
@@ -179,7 +179,7 @@ fn findings(material: &Material<'_>, section: &ShellSection, law: &Law) -> Vec<F
     findings
 }
 
-fn notes(material: &Material<'_>, thickness: f64, law: &Law) -> Vec<String> {
+fn notes(material: &CardInput<'_>, thickness: f64, law: &Law) -> Vec<String> {
     let crimp =
         if material.crimp.is_some() { "are stated" } else { "are the default of the law: none are stated" };
     let mut notes = vec![
@@ -264,7 +264,7 @@ fn assumed(law: &Law, thickness: f64) -> Finding {
 }
 
 /// O043: the width of the loop of shear at half a degree, of which the law has the part above zero.
-fn loop_of_shear(material: &Material<'_>, [out, back]: [&[[f64; 2]]; 2], thickness: f64) -> Option<Finding> {
+fn loop_of_shear(material: &CardInput<'_>, [out, back]: [&[[f64; 2]]; 2], thickness: f64) -> Option<Finding> {
     let own = material.sheet.values.iter().filter(|(key, _)| key.parameter == Parameter::Hg);
     let own: Vec<f64> = own.map(|(_, estimate)| estimate.mean).collect();
     let mean = own.iter().sum::<f64>() / own.len().max(1) as f64;

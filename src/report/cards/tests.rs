@@ -42,7 +42,7 @@ pub(super) fn constitutive(section: ShellSection) -> Constitutive {
 
 pub(super) fn written(name: &str, section: ShellSection) -> Result<String, CardError> {
     let made = constitutive(section);
-    card(named(name).unwrap(), &Material { sheet: &sheet(), made: &made, stamp: None, crimp: None })
+    card(named(name).unwrap(), &CardInput { sheet: &sheet(), made: &made, stamp: None, crimp: None })
         .map(|c| c.text)
 }
 
@@ -266,7 +266,7 @@ fn abaqus_fabric_has_measured_curves_as_stress_over_strain() {
     };
     let card = card(
         named("abaqus-fabric").unwrap(),
-        &Material { sheet: &sheet, made: &made, stamp: None, crimp: None },
+        &CardInput { sheet: &sheet, made: &made, stamp: None, crimp: None },
     )
     .unwrap();
     let [warp, weft, shear] = loading_data(&card.text).try_into().unwrap();
@@ -442,7 +442,7 @@ fn what_has_no_place_is_told_with_its_size() {
         sheet.values.insert(Key { parameter, direction }, Estimate::single(mean));
     }
     for target in EXPORTERS {
-        let card = card(target, &Material { sheet: &sheet, made: &made, stamp: None, crimp: None }).unwrap();
+        let card = card(target, &CardInput { sheet: &sheet, made: &made, stamp: None, crimp: None }).unwrap();
         let messages: Vec<String> =
             card.findings.iter().filter(|f| f.code() == "O044").map(|f| f.message().to_string()).collect();
         for message in &messages {

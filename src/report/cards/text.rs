@@ -4,19 +4,19 @@ use std::fmt::Write as _;
 
 use unicode_normalization::UnicodeNormalization;
 
-use super::card::Material;
+use super::card::CardInput;
 use crate::report::write::hash;
 
 /// What cards say of a law that is a section.
 const LINEAR: &str = "Linear and elastic: no friction, no time.";
 
 /// What every card says of itself: the fabric, the origin of its data, units, axes, date, assumptions, and notes.
-pub fn provenance(material: &Material<'_>, notes: &[String]) -> Vec<String> {
+pub fn provenance(material: &CardInput<'_>, notes: &[String]) -> Vec<String> {
     provenance_of(material, LINEAR, notes)
 }
 
 /// The same of a law that is not linear, with a sentence of what it is.
-fn provenance_of(material: &Material<'_>, law: &str, notes: &[String]) -> Vec<String> {
+fn provenance_of(material: &CardInput<'_>, law: &str, notes: &[String]) -> Vec<String> {
     let info = &material.sheet.info;
     let mut lines = vec![
         format!(
@@ -35,12 +35,12 @@ fn provenance_of(material: &Material<'_>, law: &str, notes: &[String]) -> Vec<St
 }
 
 /// The same as comments, each line behind `comment`.
-pub fn preamble(material: &Material<'_>, comment: &str, notes: &[String]) -> String {
+pub fn preamble(material: &CardInput<'_>, comment: &str, notes: &[String]) -> String {
     preamble_of(material, comment, LINEAR, notes)
 }
 
 /// The same of a law that is not linear, with a sentence of what it is.
-pub fn preamble_of(material: &Material<'_>, comment: &str, law: &str, notes: &[String]) -> String {
+pub fn preamble_of(material: &CardInput<'_>, comment: &str, law: &str, notes: &[String]) -> String {
     let mut text = String::new();
     for part in provenance_of(material, law, notes).iter().flat_map(|line| wrapped(line)) {
         let _ = writeln!(text, "{comment} {part}");
@@ -93,7 +93,7 @@ pub fn label(name: &str, longest: usize) -> String {
 }
 
 /// The name of a set of elements.
-pub fn set(material: &Material<'_>) -> String {
+pub fn set(material: &CardInput<'_>) -> String {
     format!("KESF_{}", label(&material.sheet.name, 50))
 }
 

@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 use uuid::Builder;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Property, no_place};
 use super::fabric::file_names;
 use crate::characterise::SpecimenResult;
@@ -83,9 +83,9 @@ const CONSTRUCTIONS: &[(&str, &str, &str)] = &[
 const NO_DATE: &str = "1970-01-01T00:00:00Z";
 
 /// The document.
-fn document(material: &Material<'_>, checked: &ShellSection) -> Result<Card, CardError> {
+fn document(material: &CardInput<'_>, checked: &ShellSection) -> Result<Card, CardError> {
     let wrong = |e: serde_json::Error| CardError::Json { program: "U3M", reason: e.to_string() };
-    let Material { sheet, made, stamp, .. } = *material;
+    let CardInput { sheet, made, stamp, .. } = *material;
     let section = section_document([(sheet, made)]);
     let parameters = serde_json::to_value(sheet_document([sheet], None)).map_err(wrong)?;
     let mut ours = Map::new();

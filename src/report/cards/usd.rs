@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::card::{Card, CardError, Exporter, Material};
+use super::card::{Card, CardError, CardInput, Exporter};
 use super::constants::{Constants, Property, Yarn, lost, no_place};
 use super::swatch::{Swatch, swatch};
 use super::text::{label, number, preamble};
@@ -30,7 +30,7 @@ pub(super) const HINGES: &str = "Programs that resist bending by hinges may need
 /// `physics:thicknesses` (m) of the mesh. The structural stiffnesses hold as they are, whatever the thickness. In terms
 /// of an isotropic plate they are `E t / (1 - ν²)`, `G t` and `E t³ / (12 (1 - ν²))`; here the tensile stiffness is that
 /// of a strip, as a strip is what a fabric is pulled as.
-fn write(material: &Material<'_>, section: &ShellSection) -> Result<Card, CardError> {
+fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardError> {
     let c = Constants::of(section);
     let notes = [
         "The proposal is isotropic: strips cut along warp and weft have the constants of their own direction, the \
@@ -77,7 +77,7 @@ impl<'a> Body<'a> {
 
 /// A stage with bodies and the three materials of a fabric: of strips along warp and weft, and of a sheet.
 pub(super) fn stage(
-    material: &Material<'_>,
+    material: &CardInput<'_>,
     section: &ShellSection,
     notes: &[String],
     bodies: &[Body<'_>],

@@ -1,6 +1,6 @@
 //! A draped sheet as a USD stage: where it hangs, where it lay, and of what it is.
 
-use super::card::{Card, CardError, Material};
+use super::card::{Card, CardError, CardInput};
 use super::constants::Constants;
 use super::usd::{Body, HINGES, losses, stage};
 
@@ -41,7 +41,7 @@ impl DrapedSheet {
 ///
 /// # Errors
 /// See [`CardError`]; O041 if the lists do not fit together.
-pub fn draped(material: &Material<'_>, sheet: &DrapedSheet) -> Result<Card, CardError> {
+pub fn draped(material: &CardInput<'_>, sheet: &DrapedSheet) -> Result<Card, CardError> {
     if let Some(reason) = sheet.fault() {
         return Err(CardError::Json { program: "USD", reason });
     }
@@ -85,7 +85,7 @@ mod tests {
 
     fn written(shape: &DrapedSheet) -> Result<Card, CardError> {
         let (sheet, made) = (sheet(), constitutive(section()));
-        draped(&Material { sheet: &sheet, made: &made, stamp: None, crimp: None }, shape)
+        draped(&CardInput { sheet: &sheet, made: &made, stamp: None, crimp: None }, shape)
     }
 
     #[test]

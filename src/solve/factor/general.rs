@@ -37,7 +37,7 @@ fn scratch(need: StackReq) -> Result<MemBuffer, FactorError> {
 
 /// Structure of the factor by dofs.
 #[derive(Debug)]
-pub struct Symbolic {
+pub struct GeneralSymbolic {
     block: usize,
     /// The lower triangle of the matrix by dofs; the order of the values is that of
     /// [`for_each_entry`].
@@ -57,7 +57,7 @@ fn for_each_entry(graph: &BlockGraph, block: usize, j: usize, c: usize, mut f: i
     }
 }
 
-impl Symbolic {
+impl GeneralSymbolic {
     pub fn new(graph: &BlockGraph, block: usize, order: &Ordering) -> Result<Self, FactorError> {
         let n = graph.nodes * block;
         let (mut col_ptr, mut row_idx) = (vec![0], Vec::new());
@@ -98,7 +98,7 @@ impl Symbolic {
         a: &BlockMatrix,
         form: Form,
         threads: usize,
-    ) -> Result<Numeric, FactorError> {
+    ) -> Result<GeneralNumeric, FactorError> {
         let n = self.col_ptr.len() - 1;
         let mut values = Vec::with_capacity(self.row_idx.len());
         for j in 0..a.graph.nodes {
@@ -135,7 +135,7 @@ impl Symbolic {
             }
         };
         match bad_pivot {
-            None => Ok(Numeric { symbolic: Arc::clone(self), form, l }),
+            None => Ok(GeneralNumeric { symbolic: Arc::clone(self), form, l }),
             Some(step) => Err(self.bad_pivot(form, step, &l)),
         }
     }
@@ -190,13 +190,13 @@ fn par(_threads: usize) -> Par {
 
 /// The values of L, and of D on the diagonal of an indefinite matrix.
 #[derive(Debug)]
-pub struct Numeric {
-    symbolic: Arc<Symbolic>,
+pub struct GeneralNumeric {
+    symbolic: Arc<GeneralSymbolic>,
     form: Form,
     l: Vec<f64>,
 }
 
-impl Numeric {
+impl GeneralNumeric {
     pub fn solve(&self, x: &mut [f64], columns: usize) {
         let n = self.symbolic.col_ptr.len() - 1;
         let cholesky = &self.symbolic.cholesky;

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector2, Vector3};
 
 use super::Memory;
-use crate::element::corotational::{Motion, Reference};
+use crate::element::corotational::{Motion, ReferenceFrame};
 use crate::element::{Arcs, Bent, Cellwise, Matrix24, Prepared, Strains, Vector24, YarnStrain, Yarns};
 use crate::law::{self, Response};
 use crate::model::Model;
@@ -15,7 +15,7 @@ pub(super) struct Sheet<'a> {
     law: Option<&'a SheetLaw>,
     /// Membrane stiffness along the material axes of what follows no law (N/m).
     d_m: Matrix3<f64>,
-    references: Vec<Reference>,
+    references: Vec<ReferenceFrame>,
     /// Which matrices each element has.
     kinds: Vec<u32>,
     yarns: Vec<Yarns>,
@@ -101,7 +101,7 @@ impl<'a> Sheet<'a> {
             self.arcs.push(element.arcs());
         }
         self.kinds.push(self.yarns.len() as u32 - 1);
-        self.references.push(Reference::of(&element.frame));
+        self.references.push(ReferenceFrame::of(&element.frame));
     }
 
     /// The answer of an element to places and rotations of its nodes, from a memory.

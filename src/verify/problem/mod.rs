@@ -23,7 +23,7 @@ use super::function::Function;
 /// A problem of the suite with its parameters.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Problem {
+pub enum VerifyProblem {
     /// A rectangular plate.
     Plate(plate::PlateProblem),
     /// Rate at which the error of a plate falls.
@@ -70,7 +70,7 @@ pub enum Problem {
     Newmark(dynamics::NewmarkProblem),
 }
 
-impl Problem {
+impl VerifyProblem {
     /// The value, and the point at which it was taken, for problems that have one.
     pub(super) fn value(&self, statics: &mut Statics) -> Result<(f64, [f64; 2]), VerifyError> {
         let value = match self {
