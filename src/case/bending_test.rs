@@ -116,8 +116,8 @@ pub struct FabBendLoop {
     pub from: Vec<FabKind>,
 }
 
-/// The name of each bending test in a case, and what it gives.
-pub(crate) const BENDING_TESTS: [(&str, &str); 3] = [
+/// The name of each bending test in a case, and what it gives, for lists.
+pub const BENDING_TESTS: [(&str, &str); 3] = [
     ("cantilever", "overhang at 41.5 degrees, bending length"),
     ("heart_loop", "strip hung by both ends: height, and B from it"),
     ("fab_bend_loop", "FAB force against clamp distance: B, predictions"),

@@ -47,8 +47,7 @@ use crate::solve::{Method, Options};
 
 pub use adaptive::Adaptive;
 pub use analysis::{Analysis, Buckling, Linear, Modal, Nonlinear};
-pub(crate) use bending_test::BENDING_TESTS;
-pub use bending_test::{BendingTest, FabBendLoop, Strip, StripBending, StripKind};
+pub use bending_test::{BENDING_TESTS, BendingTest, FabBendLoop, Strip, StripBending, StripKind};
 pub use check::{Check, CheckReference, ProbePoint, ReferenceKind};
 pub(crate) use check::{numbered, unit_of};
 pub use error::CaseError;
