@@ -9,6 +9,7 @@ use super::sniff::{Number, number};
 use super::unit_text::split_unit;
 use super::vocabulary::Vocabulary;
 use super::words::normalised;
+use crate::finding::{Finding, Place, ReadFact};
 
 /// Rows of numbers that make a block.
 const FEWEST: usize = 3;
@@ -56,7 +57,7 @@ impl<'t> Scanner<'t, '_> {
     }
 
     /// Adds a block, or its rows to the record above that it is a part of.
-    pub(super) fn add(&self, blocks: &mut Vec<Block<'t>>, block: Block<'t>, part: Option<Part>) {
+    pub(super) fn add(&mut self, blocks: &mut Vec<Block<'t>>, block: Block<'t>, part: Option<Part>) {
         match (blocks.last_mut(), block) {
             (Some(Block::Curves { pairs, rows }), Block::Curves { pairs: next, rows: more })
                 if part.is_some() && are_of_one_record(pairs, &next) =>
@@ -64,6 +65,8 @@ impl<'t> Scanner<'t, '_> {
                 let turned = part == Some(Part::Unloading) && self.is_turned(&pairs[0].x, rows, &more);
                 rows.extend_from_slice(&more);
                 if turned {
+                    let place = Place::at(self.context.path, more.first().map_or(0, |row| row.line), 0);
+                    self.findings.push(Finding::new(ReadFact::UnloadingTurned {}).at(place));
                     let first = rows.len() - more.len();
                     rows[first..].reverse();
                 }

@@ -77,6 +77,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("R144", "r144-travel.csv", "r144-travel.csv:1:1"),
     ("R145", "r145-lacking.csv", "r145-lacking.csv:33:9"),
     ("R146", "r146-brackets.csv", "r146-brackets.csv:4:18"),
+    ("R148", "r148_warp_FB2_1.csv", "r148_warp_FB2_1.csv:33"),
     ("R147", "r147-significance.csv", "r147-significance.csv:2:3"),
     ("R141", "r141-no-origin", "r141-no-origin/fabric.toml"),
     ("R140", "r140-status.csv", "r140-status.csv:3"),

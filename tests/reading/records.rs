@@ -185,9 +185,11 @@ fn branches_and_cycles_below_one_another_are_one_record() {
     let expected = plain(&points).measurements[0].curve.clone();
     let (out, back) = points.split_at(21);
     let turned: Vec<_> = back.iter().rev().copied().collect();
+    let upwards = format!("{HEADS}{}UNLOADING\n{}", rows(out), rows(&turned));
+    assert_eq!(told(&read(&upwards), "R148").len(), 1);
     for text in [
         format!("{HEADS}{}UNLOADING\n{}", rows(out), rows(back)),
-        format!("{HEADS}{}UNLOADING\n{}", rows(out), rows(&turned)),
+        upwards,
         format!("LOADING\n{HEADS}{}\nUnloading\n{HEADS}{}", rows(out), rows(back)),
         format!("{HEADS}Loading\n{}Unloading\n{}", rows(out), rows(back)),
         format!("Cycle 1\n{HEADS}{}\nCycle 2\n{HEADS}{}", rows(out), rows(back)),
@@ -195,6 +197,7 @@ fn branches_and_cycles_below_one_another_are_one_record() {
         let content = read(&text);
         assert_eq!(content.measurements.len(), 1, "{text:.60}");
         assert_eq!(content.measurements[0].curve, expected, "{text:.60}");
+        assert!(text.contains(&format!("UNLOADING\n{}", rows(&turned))) || told(&content, "R148").is_empty());
     }
     // Of another specimen they are another record.
     let other = format!("Specimen,1\n{HEADS}{a}\nSpecimen,2\nCycle 2\n{HEADS}{a}", a = rows(&points));

@@ -293,6 +293,9 @@ super::facts! {
             cells: Vec<String>,
         } = "signs of a test of significance stand where values are expected, and are left out: {}; enter the values if they are known",
             some(cells);
+        /// An unloading branch below its loading branch that rises as well.
+        "R148" UnloadingTurned {} = "the branch below the word for unloading begins where loading began and ends where it ended: it is read \
+             backwards, as the specimen was unloaded";
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";
