@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::characterise::{FabricSheet, FrictionLaw, LawBand, MeanBranch, Settings, ValueStatus};
 use crate::constitutive::{Constitutive, Entry, Provenance, Used, entries};
 use crate::finding::{Fields, Finding};
-use crate::instrument::{Direction, Origin, Parameter, Test};
+use crate::instrument::{Direction, MeasuredResult, Origin, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
 
 /// `kesf.sheet/1`: the parameters of fabrics.
@@ -77,7 +77,7 @@ pub struct SheetEntry {
 }
 
 /// What people state of a fabric (SI).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Stated {
     /// Areal density (kg/m²).
@@ -86,6 +86,9 @@ pub struct Stated {
     /// Thickness (m).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<f64>,
+    /// Measured behaviour that predictions are compared with, as `[[results]]` of fabric.toml has it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub results: Vec<MeasuredResult>,
 }
 
 impl Stated {
@@ -326,7 +329,11 @@ impl SheetEntry {
             name: sheet.name.clone(),
             title: info.title.clone(),
             origin: info.origin,
-            stated: Stated { areal_density: info.areal_density, thickness: info.thickness },
+            stated: Stated {
+                areal_density: info.areal_density,
+                thickness: info.thickness,
+                results: info.results.clone(),
+            },
             parameters: parameters(sheet),
             moduli: moduli(sheet),
             friction: sheet.laws.clone(),

@@ -127,8 +127,8 @@ struct Open {
 fn sheet(entry: SheetEntry) -> Result<FabricSheet, DocumentError> {
     let name = entry.name;
     let unknown = |what: String| DocumentError::Content { fabric: name.clone(), what };
-    let Stated { areal_density, thickness } = entry.stated;
-    let info = FabricInfo { areal_density, thickness, ..info(entry.title, entry.origin) };
+    let Stated { areal_density, thickness, results } = entry.stated;
+    let info = FabricInfo { areal_density, thickness, results, ..info(entry.title, entry.origin) };
     let mut sheet = FabricSheet { name: name.clone(), info, laws: entry.friction, ..Default::default() };
     for (symbol, values) in entry.parameters {
         let parameter = Parameter::from_symbol(&symbol)
@@ -215,6 +215,7 @@ fn info(title: String, origin: Origin) -> FabricInfo {
 mod tests {
     use super::*;
     use crate::constitutive::{Assumptions, section};
+    use crate::instrument::MeasuredResult;
     use crate::report::json::{section_document, sheet_document, text};
 
     fn sheet() -> FabricSheet {
@@ -224,6 +225,12 @@ mod tests {
             ..Default::default()
         };
         sheet.info.thickness = Some(4e-4);
+        sheet.info.results.push(MeasuredResult {
+            quantity: "drape_coefficient".into(),
+            value: "53.4 %".into(),
+            method: "Cusick".into(),
+            direction: None,
+        });
         let values = [
             (Parameter::B, Some(Direction::Warp), 8e-6),
             (Parameter::B, Some(Direction::Weft), 4e-6),
@@ -247,6 +254,7 @@ mod tests {
             panic!("no sheets")
         };
         assert_eq!((read[0].values.clone(), read[0].info.origin), (sheet().values, Origin::Published));
+        assert_eq!(read[0].info.results, sheet().info.results);
         let [from, back] = [&sheet(), &read[0]].map(|s| section(s, &Assumptions::default()).unwrap());
         assert_eq!((from.section, from.used), (back.section, back.used));
     }

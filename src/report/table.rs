@@ -2,6 +2,8 @@
 
 mod cell;
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use super::CsvTable;
@@ -383,6 +385,14 @@ pub fn history_rows(result: &CaseResult) -> Vec<HistoryRow> {
 /// The row that stands for a fabric that could not be characterised.
 pub fn failed_fabric_row(fabric: &str, code: &str) -> FabricRow {
     FabricRow { fabric: fabric.into(), status: code.into(), ..FabricRow::default() }
+}
+
+impl ProblemRow {
+    /// The message, with what to do where it does not say it itself.
+    pub fn whole_message(&self) -> Cow<'_, str> {
+        let with_hint = |hint| Cow::Owned(format!("{}; {hint}", self.message));
+        self.hint.as_ref().map_or(Cow::Borrowed(&self.message), with_hint)
+    }
 }
 
 /// The row of a finding; `otherwise` is the place of a finding that has none.

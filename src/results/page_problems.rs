@@ -93,7 +93,7 @@ impl OfCode {
                 fabric: row.fabric.clone(),
                 page: None,
                 place: row.place.clone(),
-                message: row.message.clone(),
+                message: row.whole_message().into_owned(),
             });
         }
     }
@@ -127,6 +127,14 @@ mod tests {
             fabric: fabric.map(String::from),
             hint: None,
         }
+    }
+
+    #[test]
+    fn what_failed_is_told_with_what_to_do() {
+        let mut problems = Problems::default();
+        problems.add(&ProblemRow { hint: Some("write `fabric`".into()), ..row("O055", Some("a")) });
+        let groups = problems.groups(&["a"], |_| String::new());
+        assert_eq!(groups[0].lines[0].message, "m; write `fabric`");
     }
 
     #[test]

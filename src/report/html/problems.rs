@@ -85,7 +85,7 @@ pub(super) fn failures(out: &mut String, rows: &[ProblemRow]) {
             "<li class=\"error\"><code>{}</code> <code>{}</code> {}</li>\n",
             escape(&row.code),
             escape(&local(&row.place)),
-            prose(&without_folders(&row.message))
+            prose(&without_folders(&row.whole_message()))
         ));
     }
     out.push_str("</ul>\n");

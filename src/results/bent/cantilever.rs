@@ -44,6 +44,14 @@ impl BendingReport for Vec<Cantilever> {
     fn lines(&self, task: &Task) -> Vec<Vec<String>> {
         self.iter().map(|c| line(task, c)).collect()
     }
+
+    fn note(&self) -> Option<&'static str> {
+        let has_friction = self.iter().any(|c| c.friction.is_some());
+        has_friction.then_some(
+            "a measured bending length is to be compared with `c friction`: cloth rubs while it bends down; `c elastic` is that \
+             of B alone",
+        )
+    }
 }
 
 /// The measured bending length (m) in the direction of a cantilever.

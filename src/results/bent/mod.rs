@@ -7,6 +7,7 @@ mod report;
 mod strip;
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -143,12 +144,20 @@ pub(super) fn write_charts(
 
 /// One table for each kind of test among the results.
 pub(super) fn texts(results: &[(&Task, &BendingResult)]) -> Vec<String> {
-    let mut tables = IndexMap::new();
+    let (mut tables, mut notes) = (IndexMap::new(), BTreeMap::new());
     for (task, result) in results {
         let report = report(result);
         let headings = report.headings();
         let table = tables.entry(headings).or_insert_with(|| Columns::new(headings.iter().copied()));
         report.lines(task).into_iter().for_each(|line| table.row(line));
+        notes.extend(report.note().map(|note| (headings, note)));
     }
-    tables.into_values().filter_map(Columns::filled).map(|table| table.text()).collect()
+    let with_note = |(headings, table): (_, Columns)| {
+        let table = table.filled()?;
+        Some(match notes.get(&headings) {
+            Some(note) => table.with_note(note).text(),
+            None => table.text(),
+        })
+    };
+    tables.into_iter().filter_map(with_note).collect()
 }

@@ -20,6 +20,11 @@ pub(super) trait BendingReport {
 
     /// Lines of the table of a terminal.
     fn lines(&self, task: &Task) -> Vec<Vec<String>>;
+
+    /// What stands below that table.
+    fn note(&self) -> Option<&'static str> {
+        None
+    }
 }
 
 pub(super) fn row(
