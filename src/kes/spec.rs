@@ -207,3 +207,20 @@ impl Role {
         Test::of_ordinate(self).is_some_and(|test| test.shape() == Shape::Sweep)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A heading that several tests have does not tell which it is.
+    #[test]
+    fn columns_of_one_test_tell_it() {
+        assert_eq!(Test::of_abscissa(Role::Curvature), Some(Test::Bending));
+        assert_eq!(Test::of_ordinate(Role::Pressure), Some(Test::Compression));
+        assert_eq!(Test::of_ordinate(Role::Height), Some(Test::Roughness));
+        for shared in [Role::Displacement, Role::Position] {
+            assert_eq!(Test::of_abscissa(shared), None, "{shared:?}");
+        }
+        assert_eq!(Test::of_ordinate(Role::Ignored), None);
+    }
+}
