@@ -76,7 +76,7 @@ fn by_face(either: &Channel, [below, above]: [f64; 2]) -> Result<Channel, LawErr
     knots.sort_by(f64::total_cmp);
     let tangents: Vec<f64> =
         knots.iter().map(|k| backbone.at(*k).tangent * if *k < 0.0 { below } else { above }).collect();
-    Channel::new(Backbone::new(0.0, &knots, &tangents)?, either.families().to_vec(), false)
+    Channel::with_memory_of(Backbone::new(0.0, &knots, &tangents)?, &[(either, 1.0)])
 }
 
 #[cfg(test)]

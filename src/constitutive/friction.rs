@@ -18,7 +18,7 @@ use super::{Assumptions, ConstitutiveError, Provenance, tension};
 use crate::characterise::{Basis, FabricSheet, FrictionLaw, bending_law};
 use crate::finding::SectionFact;
 use crate::instrument::{Direction, Parameter, Test};
-use crate::law::{Backbone, Channel, Family, LawError, Mode, Slider};
+use crate::law::{Backbone, Channel, LawError, Mode};
 use crate::quantity::significant;
 use crate::section::{SheetLaw, ShellSection};
 
@@ -122,14 +122,8 @@ fn twist(bending: &[Channel; 2], [b1, b2, h]: [f64; 3]) -> Result<Option<Channel
     }
     let couples = bending.each_ref().map(Channel::couple);
     let friction = (couples[0] * couples[1]).sqrt() * h / (b1 * b2).sqrt();
-    let half = |law: &Channel, own: f64| -> Vec<Family> {
-        let part = if own > 0.0 { 0.5 * friction / own } else { 0.0 };
-        let scaled = |s: &Slider| Slider { stiffness: part * s.stiffness, ..*s };
-        let family = |f: &Family| Family { sliders: f.sliders.iter().map(scaled).collect(), ..f.clone() };
-        law.families().iter().map(family).collect()
-    };
-    let families = [half(&bending[0], couples[0]), half(&bending[1], couples[1])].concat();
-    Channel::new(Backbone::line(h)?, families, false).map(Some)
+    let [warp, weft] = couples.map(|own| if own > 0.0 { 0.5 * friction / own } else { 0.0 });
+    Channel::with_memory_of(Backbone::line(h)?, &[(&bending[0], warp), (&bending[1], weft)]).map(Some)
 }
 
 fn source(law: &FrictionLaw) -> Because {

@@ -22,7 +22,7 @@ fn firm(sheet: &FabricSheet, direction: Direction) -> Option<Channel> {
     let tangents: Vec<f64> = backbone.tangents().map(|t| t.max(least)).collect();
     // Greater tangents at the same knots, and the same sliders: a law if the first one was.
     let backbone = Backbone::new(backbone.offset(), &knots, &tangents).ok()?;
-    Channel::new(backbone, law.families().to_vec(), false).ok()
+    Channel::with_memory_of(backbone, &[(&law, 1.0)]).ok()
 }
 
 /// The laws of `ε_x, ε_y` of a structure, if the curves are asked for: those of the tests of tension, through the origin, for a

@@ -124,6 +124,20 @@ impl Channel {
         Ok(Self { backbone, families, one_sided })
     }
 
+    /// A law of a backbone with the memory of other laws, the stresses of each multiplied by a factor. It is not one-sided.
+    ///
+    /// # Errors
+    /// See [`new`](Self::new).
+    pub fn with_memory_of(backbone: Backbone, others: &[(&Self, f64)]) -> Result<Self, LawError> {
+        let scaled = |family: &Family, factor: f64| {
+            let stiffer = |s: &Slider| Slider { stiffness: factor * s.stiffness, ..*s };
+            Family { sliders: family.sliders.iter().map(stiffer).collect(), ..family.clone() }
+        };
+        let families =
+            others.iter().flat_map(|(law, factor)| law.families.iter().map(|family| scaled(family, *factor)));
+        Self::new(backbone, families.collect(), false)
+    }
+
     /// A law without friction.
     pub fn elastic(backbone: Backbone) -> Self {
         Self { backbone, families: Vec::new(), one_sided: false }
@@ -173,10 +187,8 @@ impl Channel {
     pub fn scaled(&self, backbone: f64, sliders: f64) -> Result<Self, LawError> {
         let knots: Vec<f64> = self.backbone.knots().collect();
         let tangents: Vec<f64> = self.backbone.tangents().map(|t| backbone * t).collect();
-        let stiffer = |s: &Slider| Slider { stiffness: sliders * s.stiffness, ..*s };
-        let family = |f: &Family| Family { sliders: f.sliders.iter().map(stiffer).collect(), ..f.clone() };
-        let families = self.families.iter().map(family).collect();
-        Self::new(Backbone::new(self.backbone.offset(), &knots, &tangents)?, families, self.one_sided)
+        let backbone = Backbone::new(self.backbone.offset(), &knots, &tangents)?;
+        Ok(Self { one_sided: self.one_sided, ..Self::with_memory_of(backbone, &[(self, sliders)])? })
     }
 
     /// The law with every strain multiplied by a factor: it takes the same stresses at strains that are so much greater.
