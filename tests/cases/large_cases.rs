@@ -23,32 +23,9 @@ fn strip(analysis: &str, load: &str) -> Case {
 }
 
 fn text_of(analysis: &str, load: &str) -> String {
+    let strip = include_str!("../common/strip.toml");
     format!(
-        r#"title = "strip"
-[section]
-tensile_warp = "600 N/m"
-tensile_weft = "600 N/m"
-poisson = 0.0
-shear = "300 N/m"
-bending_warp = "8e-6 N·m"
-bending_weft = "8e-6 N·m"
-bending_coupling = "0 N·m"
-torsion = "4e-6 N·m"
-transverse_shear = "50 N/m"
-areal_density = "0.15 kg/m²"
-thickness = "0.4 mm"
-[sheet]
-shape = "strip"
-width = "20 cm"
-height = "1 cm"
-cells = [20, 1]
-[[supports]]
-set = "all"
-fix = ["v", "theta_x", "theta_z"]
-[[supports]]
-set = "left"
-kind = "clamped"
-[[loads]]
+        r#"{strip}[[loads]]
 {load}
 [[probes]]
 name = "tip"

@@ -262,32 +262,9 @@ fn a_strip_is_pulled_over_a_drum() {
 }
 
 fn case_of(obstacle: &str, analysis: &str) -> Result<CaseResult, String> {
+    let strip = include_str!("../common/strip.toml").replace("[20, 1]", "[40, 1]");
     let text = format!(
-        r#"title = "strip"
-[section]
-tensile_warp = "600 N/m"
-tensile_weft = "600 N/m"
-poisson = 0.0
-shear = "300 N/m"
-bending_warp = "8e-6 N·m"
-bending_weft = "8e-6 N·m"
-bending_coupling = "0 N·m"
-torsion = "4e-6 N·m"
-transverse_shear = "50 N/m"
-areal_density = "0.15 kg/m²"
-thickness = "0.4 mm"
-[sheet]
-shape = "strip"
-width = "20 cm"
-height = "1 cm"
-cells = [40, 1]
-[[supports]]
-set = "all"
-fix = ["v", "theta_x", "theta_z"]
-[[supports]]
-set = "left"
-kind = "clamped"
-[[loads]]
+        r#"{strip}[[loads]]
 kind = "gravity"
 [[obstacles]]
 name = "ground"

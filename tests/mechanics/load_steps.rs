@@ -205,34 +205,8 @@ fn a_released_strip_keeps_the_curvature_of_its_law() {
     assert!(ends[1].state.memory.dissipated > ends[0].state.memory.dissipated);
 }
 
-const SHEET: &str = r#"title = "strip"
-[section]
-tensile_warp = "600 N/m"
-tensile_weft = "600 N/m"
-poisson = 0.0
-shear = "300 N/m"
-bending_warp = "8e-6 N·m"
-bending_weft = "8e-6 N·m"
-bending_coupling = "0 N·m"
-torsion = "4e-6 N·m"
-transverse_shear = "50 N/m"
-areal_density = "0.15 kg/m²"
-thickness = "0.4 mm"
-[sheet]
-shape = "strip"
-width = "20 cm"
-height = "1 cm"
-cells = [20, 1]
-[[supports]]
-set = "all"
-fix = ["v", "theta_x", "theta_z"]
-[[supports]]
-set = "left"
-kind = "clamped"
-[[probes]]
-name = "tip"
-at = ["20 cm", "5 mm"]
-"#;
+const SHEET: &str =
+    concat!(include_str!("../common/strip.toml"), "[[probes]]\nname = \"tip\"\nat = [\"20 cm\", \"5 mm\"]\n");
 
 const NONLINEAR: &str = "[analysis]\nkind = \"nonlinear\"\n";
 const WEIGHT: &str = "[[loads]]\nkind = \"gravity\"\n";
