@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use super::column_name::ColumnName;
 use super::error::{ReadError, ReadProblem};
 use super::layout::Context;
 use super::raw::{Cell, Row};
@@ -91,7 +90,7 @@ impl Columns {
         let mut of = Vec::new();
         for (index, cell) in row.filled() {
             let (name, unit) = split_unit(&cell.text);
-            let Some(role) = ColumnName::of(&name, context.vocabulary).role else { continue };
+            let Some(role) = context.column_name(&name).role else { continue };
             if role.is_abscissa() {
                 abscissa = true
             } else {

@@ -11,10 +11,12 @@ use super::column_name::ColumnName;
 use super::conditions::StatedConditions;
 use super::dialect::{Dialect, HeaderKey, Role};
 use super::error::{ReadError, ReadProblem};
+use super::facets::Facets;
 use super::label::Label;
 use super::pairs;
 use super::raw::Row;
 use super::sample_cells::{begins_with_overflow, is_text, is_without_values};
+use super::seen::Seen;
 use super::shape::{self, Region, has_numbers, is_numeric};
 use super::sniff::{Number, number};
 use super::suggest;
@@ -36,9 +38,23 @@ pub(super) struct Context<'a> {
     pub conditions: StatedConditions,
     /// What the file name says.
     pub label: Label,
+    /// What cells said that were looked at.
+    pub facets: Seen<Facets>,
+    /// What names of columns said that were looked at.
+    pub column_names: Seen<ColumnName>,
 }
 
 impl Context<'_> {
+    /// What a cell says.
+    pub fn facets(&self, cell: &str) -> Facets {
+        self.facets.get(cell, |cell| Facets::of(cell, self.vocabulary))
+    }
+
+    /// What the name of a column, without its unit, says.
+    pub fn column_name(&self, name: &str) -> ColumnName {
+        self.column_names.get(name, |name| ColumnName::of(name, self.vocabulary))
+    }
+
     pub fn error(&self, line: usize, column: usize, problem: ReadProblem) -> ReadError {
         ReadError::new(Place::at(self.path, line, column), problem)
     }
@@ -226,7 +242,7 @@ impl<'t> Scanner<'t, '_> {
     pub(super) fn headings(&self, row: &Row<'_>) -> Option<Vec<Column>> {
         let column = |(index, cell): (usize, &super::raw::Cell<'_>)| {
             let (name, unit) = split_unit(&cell.text);
-            let says = ColumnName::of(&name, self.context.vocabulary);
+            let says = self.context.column_name(&name);
             let role = says.role?;
             Some(Column { index, role, name, unit, line: row.line, column: cell.column, says })
         };

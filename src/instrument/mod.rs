@@ -56,6 +56,7 @@ mod row_names;
 mod sample_cells;
 mod samples;
 mod section;
+mod seen;
 mod shape;
 mod sniff;
 mod specimen_size;

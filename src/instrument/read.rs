@@ -17,6 +17,7 @@ use super::label::Label;
 use super::layout::{self, Block, Context, Header};
 use super::raw::{self, Row};
 use super::result_table::{self, Values};
+use super::seen::Seen;
 use super::sniff::{Sniffed, sniff, sniff_lines};
 use super::vocabulary::Vocabulary;
 use super::workbook::{self, Archive};
@@ -211,6 +212,8 @@ fn context<'a>(
         kes_units: settings.kes_units || dialect.is_some_and(|d| d.kes_units),
         conditions: settings.conditions.or(&of_dialect),
         label: label(path, vocabulary),
+        facets: Seen::default(),
+        column_names: Seen::default(),
     }
 }
 

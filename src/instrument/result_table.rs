@@ -299,7 +299,7 @@ impl<'t> Table<'t, '_> {
             if label.meta.is_none() && !self.layout.down {
                 self.states.entry(row.line).or_default().insert(label.index, text.to_string());
             }
-            let f = Facets::of(text, self.context.vocabulary);
+            let f = self.context.facets(text);
             let [had_direction, had_parameter] =
                 [facts.facets.direction.is_some(), facts.facets.names_value()];
             match label.meta {

@@ -2,7 +2,6 @@
 
 use super::Direction;
 use super::dialect::{HeaderKey, TableColumn};
-use super::facets::Facets;
 use super::layout::Context;
 use super::raw::Row;
 use super::words::folded;
@@ -26,7 +25,7 @@ pub(super) fn section(row: &Row<'_>, context: &Context<'_>) -> Option<Direction>
 /// The direction that a title states, and nothing else.
 fn direction_alone(text: &str, context: &Context<'_>) -> Option<Direction> {
     let bare = without_marks(text);
-    let f = Facets::of(&bare, context.vocabulary);
+    let f = context.facets(&bare);
     let is_other = f.parameter.is_some() || f.fast.is_some();
     let alone = f.direction.filter(|_| {
         !f.unknown && !is_other && f.index.is_none() && f.statistic.is_none() && f.meta.is_none()
@@ -41,7 +40,7 @@ fn direction_alone(text: &str, context: &Context<'_>) -> Option<Direction> {
 
 /// The direction behind its key, as the header of a record has it: what else the text says is told elsewhere.
 fn stated_direction(text: &str, context: &Context<'_>) -> Option<Direction> {
-    let f = Facets::of(text, context.vocabulary);
+    let f = context.facets(text);
     let is_heading = f.names_value() || f.unit.is_some();
     let stated = context.vocabulary.direction(text).filter(|_| !is_heading);
     stated.or_else(|| direction_alone(text, context))

@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 
 use super::cell::parts;
-use super::column_name::ColumnName;
 use super::dialect::{Role, Statistic, TableColumn};
 use super::facets::Facets;
 use super::layout::Context;
@@ -150,7 +149,7 @@ pub(super) fn has_symbols(row: &Row<'_>, context: &Context<'_>) -> bool {
 
 /// Whether a row heads the columns of curves: an abscissa and an ordinate.
 fn is_curve(row: &Row<'_>, context: &Context<'_>) -> bool {
-    let role = |cell: &str| ColumnName::of(&split_unit(cell).0, context.vocabulary).role;
+    let role = |cell: &str| context.column_name(&split_unit(cell).0).role;
     let roles: Vec<Role> = row.filled().filter_map(|(_, c)| role(&c.text)).collect();
     roles.iter().any(|r| r.is_abscissa()) && roles.iter().any(|r| !r.is_abscissa() && *r != Role::Ignored)
 }
@@ -165,7 +164,7 @@ fn states_name(row: &Row<'_>, context: &Context<'_>) -> bool {
     match (first.text.split_once([':', '=']), second) {
         (Some((name, value)), None) => key(name) && !value.trim().is_empty(),
         (_, Some((_, cell))) => {
-            let f = Facets::of(&cell.text, context.vocabulary);
+            let f = context.facets(&cell.text);
             key(first.text.trim_end_matches([':', '=', ' '])) && f.unit.is_none() && f.direction.is_none()
         }
         _ => false,
@@ -186,7 +185,7 @@ fn counts_columns(row: &Row<'_>, context: &Context<'_>) -> bool {
 
 /// The facets of every cell of a row.
 pub(super) fn facets(row: &Row<'_>, context: &Context<'_>) -> Vec<Facets> {
-    let mut out: Vec<Facets> = row.cells.iter().map(|c| Facets::of(&c.text, context.vocabulary)).collect();
+    let mut out: Vec<Facets> = row.cells.iter().map(|c| context.facets(&c.text)).collect();
     for (index, lettered) in letters::in_heads(row, context.vocabulary) {
         out[index] = lettered;
     }
@@ -196,7 +195,7 @@ pub(super) fn facets(row: &Row<'_>, context: &Context<'_>) -> Vec<Facets> {
 /// The parameter or FAST value that labels a row: one of the cells before its first number.
 pub(super) fn row_label(row: &Row<'_>, context: &Context<'_>) -> Option<(usize, Facets)> {
     let labels = row.filled().take_while(|(_, c)| !is_value(&c.text, context) && !is_gap(&c.text));
-    labels.map(|(i, c)| (i, Facets::of(&c.text, context.vocabulary))).find(|(_, f)| f.names_value())
+    labels.map(|(i, c)| (i, context.facets(&c.text))).find(|(_, f)| f.names_value())
 }
 
 /// Columns whose heads say that they name fabrics, directions or specimens, beside one that names a value with its unit or a

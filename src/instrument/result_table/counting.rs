@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::layout::{Column, LabelColumn, Layout};
 use crate::instrument::dialect::{Statistic, TableColumn};
-use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
 use crate::instrument::shape::Region;
@@ -30,7 +29,7 @@ impl Layout {
             let counts = counts(&cells);
             let is_first = Some(label.index) == first;
             let is_label = |c: &&&str| {
-                let f = Facets::of(c, context.vocabulary);
+                let f = context.facets(c);
                 f.is_clear() && (f.direction.is_some() || f.statistic.is_some()) && f.parameter.is_none()
             };
             // `Warp-1`, `Warp-2`, `Mean` label specimens.

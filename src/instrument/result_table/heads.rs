@@ -45,8 +45,7 @@ impl Heads {
             let ends = end_of_directions(head, context);
             for i in 0..width {
                 let at = (head.line, head.column(i));
-                let cell =
-                    head.get(i).map(|t| (Facets::of(t, context.vocabulary), folded(t).into_owned(), at));
+                let cell = head.get(i).map(|t| (context.facets(t), folded(t).into_owned(), at));
                 let spread = || {
                     if ends.is_some_and(|end| i >= end) {
                         return None;
@@ -81,10 +80,7 @@ impl Heads {
     /// The parameter that labels a row: before its first number, else in a column of parameters, `specimen, parameter, value`.
     pub fn label_of(&self, row: &Row<'_>, context: &Context<'_>) -> Option<(usize, Facets)> {
         shape::row_label(row, context).or_else(|| {
-            let mut named = self
-                .parameters
-                .iter()
-                .filter_map(|i| Some((*i, Facets::of(row.get(*i)?, context.vocabulary))));
+            let mut named = self.parameters.iter().filter_map(|i| Some((*i, context.facets(row.get(*i)?))));
             named.find(|(_, f)| f.names_value())
         })
     }
@@ -155,10 +151,8 @@ impl Heads {
 /// The column behind the last of several directions over columns, `Warp` and `Weft`, each of which reaches as far: none where they are no
 /// directions, or reach over different numbers of columns.
 fn end_of_directions(head: &Row<'_>, context: &Context<'_>) -> Option<usize> {
-    let named: Vec<(usize, Direction)> = head
-        .filled()
-        .filter_map(|(i, c)| Some((i, Facets::of(&c.text, context.vocabulary).direction?)))
-        .collect();
+    let named: Vec<(usize, Direction)> =
+        head.filled().filter_map(|(i, c)| Some((i, context.facets(&c.text).direction?))).collect();
     let last = head.filled().last()?.0;
     let [.., (before, one), (at, other)] = named[..] else { return None };
     // `Warp, Warp, Weft, Weft`: each column has its own.

@@ -7,7 +7,6 @@ use super::layout::NAME;
 use super::row_facts::Title;
 use crate::instrument::Direction;
 use crate::instrument::dialect::{HeaderKey, TableColumn};
-use crate::instrument::facets::Facets;
 use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
 use crate::instrument::shape::{self, Region};
@@ -76,7 +75,7 @@ impl Table<'_, '_> {
 }
 
 fn is_name(text: &str, context: &Context<'_>) -> bool {
-    let says = Facets::of(text, context.vocabulary);
+    let says = context.facets(text);
     let means_nothing = says.statistic.is_none() && says.direction.is_none() && says.index.is_none();
     means_nothing && text.chars().any(char::is_alphabetic) && text.chars().count() <= NAME
 }
