@@ -25,7 +25,7 @@ pub struct Options {
     #[arg(long)]
     paper: bool,
     /// Write the pictures of the claims into this folder
-    #[arg(short, long, value_name = "FOLDER", requires = "paper")]
+    #[arg(short, long, value_name = "FOLDER", requires = "paper", conflicts_with = "filter")]
     output: Option<PathBuf>,
     /// Overwrite files in that folder that this tool did not write
     #[arg(long, requires = "output")]
@@ -46,7 +46,6 @@ The lines are data: src/verify/suite/*.toml. --json has all digits, residuals an
 Examples:
   kesf verify
   kesf verify --filter hemisphere
-  kesf verify --filter published
   kesf verify --paper -o pictures";
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {

@@ -14,7 +14,7 @@ errors! {
             #[serde(serialize_with = "path_as_text")]
             folder: PathBuf,
         } at Place::file(folder), = "there is no part"
-            => "name the folder that was given to `kesf run --shard K/N -o`";
+            => "name a folder of results, or the one that was given to `kesf run --shard K/N -o`";
         /// O065: some are missing.
         "O065" Missing {
             /// The folder.

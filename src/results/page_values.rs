@@ -24,7 +24,8 @@ pub(super) fn tests(report: &FabricReport) -> Option<Block> {
         report.predictions.iter().filter(|row| is_of_test(row)).map(test_row).collect();
     (!rows.is_empty()).then(|| Block::Units {
         caption: "Measured against simulated. The section is made of the measured stiffness, so agreement there shows \
-                  that the simulated test reads it back; a difference is of clamps, edges and friction."
+                  that the simulated test reads it back; a difference is of clamps, edges and friction, and of G also that the \
+                  section has one for both directions."
             .into(),
         header: ["quantity", "measured", "simulated", "difference", "95 % band", "unit", "case", "remark"]
             .map(String::from)

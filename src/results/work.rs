@@ -234,7 +234,7 @@ pub(crate) fn without_fabric_named(
     } else {
         (
             format!("{name} is for a fabric, and none is there"),
-            "name one, as in `kesf solve CASE kesf_data/poplin`",
+            "name one behind the case, such as `kesf_data/poplin`",
         )
     };
     Failure::new("O055", text).at(Place::file(path)).hint(hint)

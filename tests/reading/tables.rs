@@ -168,3 +168,24 @@ fn a_table_that_cannot_be_read_does_not_cost_the_curves() {
     }
     assert_eq!(parse(Path::new("t.csv"), table.as_bytes(), &settings).unwrap_err().code(), "R008");
 }
+
+/// A mean is never lost to rows below it that have no number and that it does not sum up, whatever they are called.
+#[test]
+fn statistics_of_unknown_names_below_a_mean_are_not_the_value() {
+    let b = |content: &FileContent| values(content).iter().map(|v| (v.2, v.3)).collect::<Vec<_>>();
+    for below in ["Std. Error Mean", "err", "± s", "Streuweite", "x̃"] {
+        let tidy =
+            read(&format!("Fabric,Direction,Statistic,B\nF1,warp,Mean,0.0812\nF1,warp,{below},0.0183\n"));
+        assert_eq!(b(&tidy), [(WARP, 0.0812)], "{below}");
+        assert_eq!(told(&tidy, "R110").len(), 1, "{below}");
+        let rows = read(&format!(",B warp,B weft\nmean,0.0812,0.0533\n{below},0.0183,0.0041\n"));
+        assert_eq!(b(&rows), [(WARP, 0.0812), (WEFT, 0.0533)], "{below}");
+    }
+    // Specimens average to their mean, and stand above it or have numbers.
+    let repeats = read("Fabric,Direction,B\nF1,warp,0.08\nF1,warp,0.09\nMean,,0.2\n");
+    assert_eq!(b(&repeats), [(WARP, 0.085)]);
+    let numbered = read("Fabric,Direction,Specimen,B\nF1,warp,Mean,0.2\nF1,warp,1,0.08\nF1,warp,2,0.09\n");
+    assert_eq!(b(&numbered), [(WARP, 0.085)]);
+    let below = read("Fabric,Direction,Statistic,B\nF1,warp,Mean,0.085\nF1,warp,,0.08\nF1,warp,,0.09\n");
+    assert_eq!(b(&below), [(WARP, 0.085)]);
+}

@@ -341,7 +341,7 @@ super::facts! {
              that load";
         /// A drape without friction.
         "S113" ElasticDrape {} =
-            "elastic: the friction between yarns is left out, which holds a sheet up: the coefficient is too low by it";
+            "elastic: the friction between yarns, which holds a sheet up, is left out, and the coefficient is lower for it";
         /// Searches for a drape without an end.
         "S114" FailedSearches {
             /// The folds at the start of each.

@@ -285,6 +285,9 @@ impl<'t> Table<'t, '_> {
             let name = singles.first().and_then(|d| self.layout.values.iter().find(|c| c.index == d.cell));
             unread.extend(name.map(|c| c.name.clone()));
             Vec::new()
+        } else if mean.as_ref().is_some_and(|mean| are_below_their_mean(&singles, mean)) {
+            left_out.extend(singles.iter().map(|d| ((true, d.line, 0), UNKNOWN_STATISTIC.to_string())));
+            Vec::new()
         } else {
             singles
         };
@@ -454,6 +457,21 @@ impl Datum {
     fn of_fabrics(&self, table: &Table<'_, '_>) -> bool {
         self.by_row && table.several && self.fabric.is_none()
     }
+}
+
+/// Stands for the word of a row that is none of a specimen.
+const UNKNOWN_STATISTIC: &str = "a statistic of a name that is not known";
+
+/// How far the mean of values may be from the mean that sums them up, by rounding.
+const ROUNDED: f64 = 0.1;
+
+/// Whether rows without a number, all of them below a row of means, are not what it sums up: other statistics, under words that
+/// are not known. Those of specimens average to it.
+fn are_below_their_mean(singles: &[Datum], mean: &Datum) -> bool {
+    let Some(own) = Estimate::of(&singles.iter().map(|d| d.mean).collect::<Vec<_>>()) else { return false };
+    mean.by_row
+        && singles.iter().all(|d| d.index.is_none() && d.line > mean.line)
+        && (own.mean - mean.mean).abs() > ROUNDED * mean.mean.abs()
 }
 
 /// Letters of the longest abbreviation of a deviation in per cent.

@@ -69,7 +69,7 @@ fn in_time(task: &Task, result: &CaseResult, history: &History, step: &str) -> H
         ("kinetic", history.energy.iter().map(|e| e.kinetic).collect::<Vec<_>>()),
         ("strain", history.energy.iter().map(|e| e.strain).collect()),
         ("dissipated", history.energy.iter().map(|e| e.dissipated).collect()),
-        ("work of the loads", history.energy.iter().map(|e| e.work).collect()),
+        ("initial, and work of loads", history.energy.iter().map(|e| e.work).collect()),
     ];
     let energies = energy.map(|(name, values)| (name.to_string(), in_order(&history.time, values)));
     HistoryPlot { along: ["Time".into(), "s".into()], ..plot(task, result, step, lines, energies.to_vec()) }
