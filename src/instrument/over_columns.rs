@@ -1,6 +1,6 @@
 //! What stands over the columns of curves: rows of labels, and a line that is a direction alone.
 
-use super::dialect::HeaderKey;
+use super::dialect::{BranchColumn, HeaderKey};
 use super::label::Label;
 use super::layout::{Entry, Scanner};
 use super::pairs;
@@ -18,12 +18,14 @@ impl Scanner<'_, '_> {
         };
         let labels: Vec<(usize, Label, Entry)> = row.filled().map(label).collect();
         let is_mean = |e: &Entry| pairs::of_label(&e.text, self.context.vocabulary).is_some();
+        let are_branches = self.are_branches(&labels);
         // Specimens and directions come first: `maximum,2.5 1/cm` is a header line, and so is `direction,warp`.
         let is_key = labels.first().is_some_and(|(_, _, e)| self.context.vocabulary.key(&e.text).is_some());
         // `width,20`: a key, and not the direction of that name.
         let complete = !is_key
-            && labels.first().is_some_and(|(_, l, _)| l.is_plain())
-            && labels.iter().all(|(_, l, e)| l.is_plain() || is_mean(e));
+            && (are_branches
+                || labels.first().is_some_and(|(_, l, _)| l.is_plain())
+                    && labels.iter().all(|(_, l, e)| l.is_plain() || is_mean(e)));
         let below = || self.rows[self.at + 1..].iter().filter(|r| !r.is_blank()).take(2);
         if labels.len() < 2 || !below().any(|r| self.headings(r).is_some()) {
             return false;
@@ -45,6 +47,16 @@ impl Scanner<'_, '_> {
         }
         self.labels.push(labels);
         true
+    }
+
+    /// `Loading,,Unloading,`, again and again: the branches of records whose columns stand beside each other.
+    fn are_branches(&self, labels: &[(usize, Label, Entry)]) -> bool {
+        let branches: Vec<_> =
+            labels.iter().map(|(_, _, e)| self.context.vocabulary.branch(&e.text)).collect();
+        let is_pair = |pair: &[Option<BranchColumn>]| {
+            pair.contains(&Some(BranchColumn::Loading)) && pair.contains(&Some(BranchColumn::Unloading))
+        };
+        !branches.is_empty() && branches.chunks(2).all(is_pair)
     }
 
     /// `Weft direction` or `** WARP **` right above the headings is the direction of the record below.

@@ -67,19 +67,29 @@ fn are_branches(before: &Pair, pair: &Pair) -> bool {
         && (before.y.says.direction, before.y.says.specimen) == (pair.y.says.direction, pair.y.says.specimen)
 }
 
+/// The label over the columns of a curve, or to the left of them.
+fn above<'l>(pair: &Pair, labels: &'l [(usize, Label, Entry)]) -> Option<&'l (usize, Label, Entry)> {
+    let left = pair.x.index.min(pair.y.index);
+    labels.iter().rfind(|(index, ..)| *index <= left.max(pair.y.index.min(left + 1)))
+}
+
+/// Gives every curve the branch whose word stands over its columns.
+fn branches_above(pairs: &mut [Pair], rows: &[Vec<(usize, Label, Entry)>], vocabulary: Vocabulary<'_>) {
+    for pair in pairs {
+        let words = rows.iter().filter_map(|labels| above(pair, labels));
+        let branch = words.filter_map(|(_, _, entry)| vocabulary.branch(&entry.text)).next();
+        pair.y.says.branch = pair.y.says.branch.or(branch);
+    }
+}
+
 /// Gives every curve the label that stands over its columns, or to the left of them where heads are merged.
 fn label(pairs: &mut [Pair], labels: &[(usize, Label, Entry)], vocabulary: Vocabulary<'_>) {
     let each = labels.len() == pairs.len();
     // A mean is left out, whatever its direction.
     let any = labels.iter().find_map(|(_, l, _)| l.direction);
     for (i, pair) in pairs.iter_mut().enumerate() {
-        let left = pair.x.index.min(pair.y.index);
-        let at = if each {
-            Some(i)
-        } else {
-            labels.iter().rposition(|(index, ..)| *index <= left.max(pair.y.index.min(left + 1)))
-        };
-        let Some((_, l, entry)) = at.and_then(|i| labels.get(i)) else { continue };
+        let above = if each { labels.get(i) } else { above(pair, labels) };
+        let Some((_, l, entry)) = above else { continue };
         let with = |text: String| Entry { text, ..entry.clone() };
         let is_mean = of_label(&entry.text, vocabulary).is_some();
         let number = l.specimen.map(|n| n.to_string()).or_else(|| is_mean.then(|| entry.text.clone()));
@@ -135,6 +145,7 @@ impl Scanner<'_, '_> {
         if first.is_some() {
             self.leave_out_companions(&mut pairs, rows);
         }
+        branches_above(&mut pairs, &self.labels, self.context.vocabulary);
         Ok(joined(pairs))
     }
 

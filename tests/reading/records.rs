@@ -221,3 +221,29 @@ fn a_specimen_called_mean_sums_up_others() {
     assert_eq!(batch.fabrics[0].measurements.len(), 2, "{:?}", batch.failures);
     assert!(batch.fabrics[0].findings.iter().any(|f| f.code() == "R110"), "{:?}", batch.fabrics[0].findings);
 }
+
+/// `Loading` and `Unloading` over columns beside each other are one record, whichever way round the unloading branch stands.
+#[test]
+fn branches_beside_each_other_have_their_words_above_the_headings() {
+    let points = points(0.08);
+    let expected = plain(&points).measurements[0].curve.clone();
+    let (out, back) = points.split_at(21);
+    let heads = HEADS.trim_end().rsplit('\n').next().unwrap();
+    let turned: Vec<_> = back.iter().rev().copied().collect();
+    for unloading in [back, &turned] {
+        let beside = |i: usize| match (out.get(i), unloading.get(i)) {
+            (Some(a), Some(b)) => format!("{},{},{},{}\n", a[0], a[1], b[0], b[1]),
+            (Some(a), None) => format!("{},{},,\n", a[0], a[1]),
+            (None, Some(b)) => format!(",,{},{}\n", b[0], b[1]),
+            (None, None) => String::new(),
+        };
+        let rows: String = (0..out.len().max(unloading.len())).map(beside).collect();
+        let content =
+            read(&format!("test,bending\ndirection,warp\n\nLoading,,Unloading,\n{heads},{heads}\n{rows}"));
+        assert_eq!(content.measurements.len(), 1);
+        let curve = &content.measurements[0].curve;
+        assert_eq!(curve.x, expected.x);
+        assert!(curve.y.iter().zip(&expected.y).all(|(a, b)| (a - b).abs() < 1e-9));
+        assert!(told(&content, "R119").is_empty());
+    }
+}
