@@ -296,7 +296,7 @@ impl<'t> Table<'t, '_> {
         let labels = self.layout.labels.clone();
         for label in &labels {
             let Some(text) = row.get(label.index) else { continue };
-            if label.meta.is_none() && !self.layout.down {
+            if label.meta.is_none() {
                 self.states.entry(row.line).or_default().insert(label.index, text.to_string());
             }
             let f = self.context.facets(text);

@@ -189,3 +189,16 @@ fn statistics_of_unknown_names_below_a_mean_are_not_the_value() {
     let below = read("Fabric,Direction,Statistic,B\nF1,warp,Mean,0.085\nF1,warp,,0.08\nF1,warp,,0.09\n");
     assert_eq!(b(&below), [(WARP, 0.085)]);
 }
+
+/// A column of states tells averaged rows apart in long tables as in wide ones.
+#[test]
+fn states_in_a_long_table_are_told() {
+    let long = "fabric,treatment,direction,variable,value,unit\ncotton,untreated,warp,B,0.08,gf·cm²/cm\n\
+                cotton,washed,warp,B,0.06,gf·cm²/cm\n";
+    let found = read(long);
+    assert_eq!(values(&found), [("cotton".into(), Parameter::B, WARP, 0.07)]);
+    assert!(told(&found, "R126")[0].contains("\"untreated\" and \"washed\""), "{:?}", found.findings);
+    // What describes a parameter does not tell its repeats apart.
+    let described = "fabric,description,variable,value,unit\na,rigidity,B,0.08,gf·cm²/cm\na,stiffness,G,0.8,gf/(cm·deg)\n";
+    assert!(told(&read(described), "R126").is_empty());
+}
