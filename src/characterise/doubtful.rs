@@ -331,3 +331,12 @@ fn widths_of_noisy_records_are_read_along_lines() {
     let clean = read(2e-7);
     assert!(!codes(&clean).contains(&"K068") && error(&clean).abs() < 0.01, "{:?}", clean.findings);
 }
+
+/// A record without a width has no part of it to tell of.
+#[test]
+fn a_loop_without_a_width_is_no_noisy_one() {
+    let rough = |k: f64, _: f64| 8e-6 * k + 1e-5 * f64::from((k.abs() * 0.8).round() as i32 % 3);
+    let sheet = evaluate(measurement(Test::Bending, 250.0, cycle(250.0, 100, rough)));
+    assert_eq!(sheet.get(P::Hb, Some(Direction::Warp)).unwrap().mean, 0.0);
+    assert!(!codes(&sheet).contains(&"K068"), "{:?}", sheet.findings);
+}

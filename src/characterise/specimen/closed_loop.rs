@@ -267,7 +267,8 @@ fn width(
     }
     let width = found.iter().sum::<f64>() / found.len() as f64;
     e.values.insert(parameter, width);
-    if let Some(&(scatter, samples)) = lines.iter().min_by_key(|line| line.1) {
+    // Of no width nothing is a part; that there is none is told by the relations between parameters.
+    if let Some(&(scatter, samples)) = lines.iter().min_by_key(|line| line.1).filter(|_| width != 0.0) {
         let [single, left] =
             [1.0, samples as f64].map(|n| scatter / (n * found.len() as f64).sqrt() / width.abs());
         notes.add(EvaluationFact::NoisyWidth { record: notes.record(), parameter, single, samples, left });
