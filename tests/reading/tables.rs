@@ -190,6 +190,18 @@ fn statistics_of_unknown_names_below_a_mean_are_not_the_value() {
     assert_eq!(b(&below), [(WARP, 0.085)]);
 }
 
+/// `F1 mean` sums up parts, `F1 1` and `F1 2`, where there are several; beside one name that begins so it is a value of its own.
+#[test]
+fn a_mean_in_a_name_is_not_that_of_one_part() {
+    let named = |second: &str| {
+        let found = read(&format!("Fabric,Direction,B\nF1 mean,warp,0.0812\n{second}"));
+        values(&found).into_iter().map(|(name, .., mean)| (name, mean)).collect::<Vec<_>>()
+    };
+    assert!(named("F1 streu,warp,0.0162\n").contains(&("F1 mean".into(), 0.0812)));
+    let parts = named("F1 1,warp,0.08\nF1 2,warp,0.0824\n");
+    assert!(!parts.iter().any(|(name, _)| name.contains("mean")), "{parts:?}");
+}
+
 /// A column of states tells averaged rows apart in long tables as in wide ones.
 #[test]
 fn states_in_a_long_table_are_told() {

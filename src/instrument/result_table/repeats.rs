@@ -133,9 +133,9 @@ impl<'t> Table<'t, '_> {
         for ((row, facts), found) in rows.iter_mut().zip(&split) {
             let Some((of, statistic, word)) = found else { continue };
             let is_fabric = plain.contains(of.as_str()) || statistics[of.as_str()].len() > 1;
-            // Names that begin with this one follow it in their order.
-            let next = plain.range(of.as_str()..).find(|n| **n != of);
-            let of_parts = next.is_some_and(|name| begins(name, of));
+            // Names that begin with this one follow it in their order; of one part there is no mean.
+            let parts = plain.range(of.as_str()..).filter(|n| **n != of).take_while(|name| begins(name, of));
+            let of_parts = parts.take(2).count() == 2;
             if !is_fabric && !of_parts && !sums.contains(of) {
                 if *statistic != Statistic::Other {
                     self.odd_names.extend(facts.fabric.iter().map(|name| (row.line, name.clone())));
