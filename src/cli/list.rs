@@ -14,9 +14,7 @@ use crate::schema::{CASE_REFERENCE, SCHEMAS};
 
 /// List the formats, dialects, units, analyses, exports, codes, schemas and keys that the program knows
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Example: kesf list units\n`kesf list dialects -v` prints the dialect files themselves, as examples for one's own."
-)]
+#[command(after_help = "Example: kesf list units; with `-v`, `kesf list dialects` prints the dialect files")]
 pub struct Options {
     /// What to list
     #[arg(value_enum)]
@@ -25,7 +23,7 @@ pub struct Options {
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
     /// Overwrite files in that folder that this tool did not write
-    #[arg(long)]
+    #[arg(long, requires = "output")]
     force: bool,
 }
 
@@ -50,6 +48,13 @@ enum Topic {
 }
 
 pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
+    if let Some(folder) = &options.output {
+        return match options.topic {
+            Topic::Schemas => write_schemas(folder, options.force),
+            _ => Err(Failure::new("O050", "only `kesf list schemas` has a folder to write into")
+                .hint("leave -o out")),
+        };
+    }
     let list = match options.topic {
         Topic::Formats => list::formats(),
         Topic::Dialects if ui.verbose && !ui.json => return ui.print(&DIALECT_FILES.join("\n")),
@@ -58,10 +63,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
         Topic::Exports => list::exports(),
         Topic::Units => list::units(),
         Topic::Codes => list::codes(),
-        Topic::Schemas => match &options.output {
-            Some(folder) => return write_schemas(folder, options.force),
-            None => list::schemas(),
-        },
+        Topic::Schemas => list::schemas(),
         Topic::Keys => return ui.print(CASE_REFERENCE),
     };
     if ui.json { ui.document(list.document()) } else { ui.print(&list.text()) }

@@ -44,7 +44,6 @@ tolerance. Every linear solve must reach |K u - f| / |f| <= 1e-8.
 The lines are data: src/verify/suite/*.toml. --json has all digits, residuals and times.
 
 Examples:
-  kesf verify
   kesf verify --filter hemisphere
   kesf verify --paper -o pictures";
 

@@ -2,8 +2,9 @@
 //! curvature that they stand for.
 
 use super::Test;
+use super::context::Context;
 use super::dialect::{HeaderKey, Role};
-use super::layout::{Column, Context, Scanner};
+use super::layout::{Column, Scanner};
 use super::ordinates::changes;
 use super::raw::Row;
 use super::unit_text::{is_volt, unit};

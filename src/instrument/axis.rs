@@ -1,9 +1,10 @@
 //! Axes: the scale that takes the numbers of a column to the SI axis of its test.
 
+use super::context::Context;
 use super::dialect::{HeaderKey, Role};
 use super::error::{ReadError, ReadProblem};
 use super::header_value::positive;
-use super::layout::{Column, Context, Entry, Header};
+use super::layout::{Column, Entry, Header};
 use super::specimen_size::{gauge, size};
 use super::unit_text::{is_angular, is_volt, known_unit};
 use super::volts;

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
+use super::context::Context;
 use super::error::{ReadError, ReadProblem};
-use super::layout::Context;
 use super::raw::{Cell, Row};
 use super::result_table::{differ, two_units};
 use super::sniff::{Number, number};

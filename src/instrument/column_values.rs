@@ -1,7 +1,8 @@
 //! The samples of a curve, from the cells of its columns: what lacks a value is left out and told.
 
+use super::context::Context;
 use super::error::{ReadError, ReadProblem};
-use super::layout::{Column, Context};
+use super::layout::Column;
 use super::raw::Row;
 use super::sample_cells::{is_missing, of_accounts};
 use super::sniff::{Number, number};

@@ -1,5 +1,6 @@
 //! Test conditions: what a file states, else what its owner states, else the standard set.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -90,7 +91,7 @@ impl<'de> Visitor<'de> for OfTests {
                     let of_test = map.next_value_seed(OfTest(test))?;
                     stated.tests.insert(test, of_test);
                 }
-                None => stated.width = Some(map.next_value()?),
+                None => stated.width = Some(map.next_value_seed(ABOVE_ZERO)?),
             }
         }
         Ok(stated)
@@ -119,10 +120,12 @@ impl<'de> Visitor<'de> for OfTest {
         let mut stated = TestConditions::default();
         while let Some(key) = map.next_key_seed(KeyOf(&keys(self.0)))? {
             match key {
-                WIDTH => stated.width = Some(map.next_value()?),
-                "gauge" => stated.gauge = Some(map.next_value()?),
-                "pretension" => stated.pretension = Some(map.next_value()?),
-                "contact" => stated.contact = Some(map.next_value()?),
+                WIDTH => stated.width = Some(map.next_value_seed(ABOVE_ZERO)?),
+                "gauge" => stated.gauge = Some(map.next_value_seed(ABOVE_ZERO)?),
+                "pretension" => stated.pretension = Some(map.next_value_seed(NOT_NEGATIVE)?),
+                "contact" => {
+                    stated.contact = Some(map.next_value_seed(Within { si: Force::si, zero: false })?)
+                }
                 _ => stated.maximum = Some(map.next_value_seed(MaximumOf(self.0))?),
             }
         }
@@ -137,7 +140,35 @@ impl<'de> DeserializeSeed<'de> for MaximumOf {
     type Value = f64;
 
     fn deserialize<D: Deserializer<'de>>(self, d: D) -> Result<f64, D::Error> {
-        deserialize_by(d, self.0.spec().read_maximum, self.0.spec().customary_maximum)
+        let maximum = deserialize_by(d, self.0.spec().read_maximum, self.0.spec().customary_maximum)?;
+        within(maximum, false)
+    }
+}
+
+/// Reads a quantity that is not below zero, nor zero unless that may be.
+struct Within<T> {
+    si: fn(T) -> f64,
+    zero: bool,
+}
+
+const ABOVE_ZERO: Within<Length> = Within { si: Length::si, zero: false };
+/// A specimen may be sheared without a tension.
+const NOT_NEGATIVE: Within<LineForce> = Within { si: LineForce::si, zero: true };
+
+impl<'de, T: Deserialize<'de> + Copy> DeserializeSeed<'de> for Within<T> {
+    type Value = T;
+
+    fn deserialize<D: Deserializer<'de>>(self, d: D) -> Result<T, D::Error> {
+        let value = T::deserialize(d)?;
+        within((self.si)(value), self.zero).map(|_| value)
+    }
+}
+
+fn within<E: Error>(si: f64, zero: bool) -> Result<f64, E> {
+    match si.partial_cmp(&0.0) {
+        Some(Ordering::Greater) => Ok(si),
+        Some(Ordering::Equal) if zero => Ok(si),
+        _ => Err(E::custom(if zero { "it must not be below zero" } else { "it must be above zero" })),
     }
 }
 
@@ -347,5 +378,12 @@ mod tests {
         assert!(refused("[tensile]\ncontact = \"5 gf\"").starts_with("unknown field `contact`"));
         assert!(refused("[tensile]\nmaximum = 500").contains("500 gf/cm"));
         assert!(refused("[tensile]\nmaximum = \"5 cm\"").ends_with("at \"5 cm\""));
+        for (key, value) in [("width", "0 cm"), ("gauge", "-5 cm"), ("maximum", "0 gf/cm")] {
+            let expected = format!("it must be above zero at \"{value}\"");
+            assert_eq!(refused(&format!("[tensile]\n{key} = \"{value}\"")), expected);
+        }
+        assert!(refused("width = \"-20 cm\"").starts_with("it must be above zero"));
+        assert!(read("[shear]\npretension = \"0 gf/cm\"").is_ok());
+        assert!(refused("[shear]\npretension = \"-1 gf/cm\"").starts_with("it must not be below zero"));
     }
 }

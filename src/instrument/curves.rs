@@ -2,12 +2,13 @@
 
 use super::axis::Axes;
 use super::column_values::Samples;
+use super::context::Context;
 use super::dialect::{HeaderKey, Role};
 use super::error::{ReadError, ReadProblem};
 use super::header_value::{positive, quantity_by, quantity_of};
 use super::inference;
 use super::label::SPECIMENS;
-use super::layout::{Context, Header, Pair};
+use super::layout::{Header, Pair};
 use super::means;
 use super::raw::Row;
 use super::specimen_size::{gauge, length_of, size};

@@ -2,9 +2,10 @@
 
 use std::str::FromStr;
 
+use super::context::Context;
 use super::dialect::HeaderKey;
 use super::error::{ReadError, ReadProblem};
-use super::layout::{Context, Entry, Header};
+use super::layout::{Entry, Header};
 use super::sniff::{Number, number};
 use super::words::folded;
 use crate::quantity::QuantityError;

@@ -2,8 +2,9 @@
 
 use super::axis::Scale;
 use super::conditions::standard_conditions;
+use super::context::Context;
 use super::dialect::HeaderKey;
-use super::layout::{Column, Context, Header, Pair};
+use super::layout::{Column, Header, Pair};
 use super::unit_text::unit as unit_of;
 use super::{Conditions, Direction, Test};
 use crate::quantity::without_rounding;

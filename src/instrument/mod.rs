@@ -18,6 +18,7 @@ mod column_name;
 mod column_values;
 mod condition;
 mod conditions;
+mod context;
 mod continued;
 mod contradictions;
 mod curves;

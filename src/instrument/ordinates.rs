@@ -1,8 +1,9 @@
 //! Ordinates over one abscissa: which are repeats of one another, and which were recorded beside them.
 
 use super::Test;
+use super::context::Context;
 use super::dialect::Role;
-use super::layout::{Column, Context, Pair, Scanner};
+use super::layout::{Column, Pair, Scanner};
 use super::raw::Row;
 use super::sniff::{Number, number};
 use super::unit_text::{is_volt, unit};

@@ -22,6 +22,7 @@ mod shifted;
 mod states;
 mod statuses;
 mod strangers;
+mod summaries;
 mod units;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -31,10 +32,11 @@ use layout::{Column, Layout};
 pub(super) use layout::{differ, two_units};
 use row_facts::{RowFacts, Title, no_direction};
 
+use super::context::Context;
 use super::dialect::{HeaderKey, Statistic, TableColumn};
 use super::error::{ReadError, ReadProblem};
 use super::facets::Facets;
-use super::layout::{Context, Header};
+use super::layout::Header;
 use super::raw::Row;
 use super::shape::{self, Region};
 use super::sniff::{Number, number};

@@ -1,8 +1,8 @@
 //! Titles of sections: a row that states a direction for those below it.
 
 use super::Direction;
+use super::context::Context;
 use super::dialect::{HeaderKey, TableColumn};
-use super::layout::Context;
 use super::raw::Row;
 use super::words::folded;
 

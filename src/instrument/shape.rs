@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use super::cell::parts;
+use super::context::Context;
 use super::dialect::{Role, Statistic, TableColumn};
 use super::facets::Facets;
-use super::layout::Context;
 use super::letters;
 use super::lines;
 use super::raw::Row;

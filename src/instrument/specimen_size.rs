@@ -1,10 +1,11 @@
 //! The size of a specimen: its width and the distance between the jaws, in one line of the header or in several.
 
 use super::Test;
+use super::context::Context;
 use super::dialect::HeaderKey;
 use super::error::ReadError;
 use super::header_value::{positive, quantity};
-use super::layout::{Context, Header};
+use super::layout::Header;
 use super::unit_text;
 use super::words::folded;
 use crate::quantity::Length;

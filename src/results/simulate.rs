@@ -136,7 +136,7 @@ fn test(task: &Task, spec: &InstrumentTest) -> Result<Vec<Tested>, Failure> {
     match spec {
         InstrumentTest::Compression(_) => {
             let curves = study::compression(sheet).into_iter();
-            Ok(curves.map(|curve| Tested::new(task.case, sheet, curve)).collect())
+            Ok(curves.map(|curve| Tested::new(task, sheet, curve)).collect())
         }
         InstrumentTest::Shell(specimen) => test_specimen(task, specimen, sheet),
     }
@@ -153,8 +153,7 @@ fn test_specimen(task: &Task, specimen: &ShellSpecimen, sheet: &FabricSheet) -> 
             let options = task.options().single();
             curve.cycle = study::simulate_cycle(specimen, direction, sheet, made, &options)?;
         }
-        let tested_curve = Tested::new(task.case, sheet, curve);
-        tested.push(Tested { grounds: tested_curve.grounds(task), ..tested_curve });
+        tested.push(Tested::new(task, sheet, curve));
     }
     Ok(tested)
 }

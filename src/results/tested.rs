@@ -61,7 +61,8 @@ pub struct Stiffness {
 
 impl Tested {
     /// A simulated test beside the sheet of its fabric.
-    pub(super) fn new(case: &Case, sheet: &FabricSheet, simulated: VirtualCurve) -> Self {
+    pub(super) fn new(task: &Task, sheet: &FabricSheet, simulated: VirtualCurve) -> Self {
+        let case = task.case;
         let (test, direction) = (simulated.test, simulated.direction);
         let [from, to] = abscissae(sheet, test, direction);
         let curve = if from < to { simulated.curve(from, to) } else { Curve::default() };
@@ -69,25 +70,19 @@ impl Tested {
             Some(direction) => format!("{} {direction}", test.name()),
             None => test.name().to_string(),
         };
+        let stiffness = stiffness(case, sheet, test, direction);
         Self {
             name,
             case: case.name.clone(),
             curve,
             comparison: compare_curves(sheet, &simulated),
-            stiffness: stiffness(case, sheet, test, direction),
-            grounds: Vec::new(),
+            grounds: grounds(task, stiffness.as_ref(), direction),
+            stiffness,
             simulated,
         }
     }
 
-    /// What its stiffness rests on that is not to be relied on.
-    pub(super) fn grounds(&self, task: &Task) -> Vec<Ground> {
-        let of_stiffness =
-            |s: &Stiffness| rests_on::of_task(task, &format!("{} {}", s.symbol, self.direction()));
-        self.stiffness.as_ref().map_or_else(Vec::new, of_stiffness)
-    }
-
-    /// ` an assumed E and a doubtful B warp`, with the words before it; nothing where all was measured.
+    /// `, on an assumed E and a doubtful B warp`, with the words before it; nothing where all was measured.
     pub(super) fn rests_on(&self, before: &str) -> String {
         let weak = self.grounds.iter().filter(|ground| ground.status != ValueStatus::Measured);
         let text = rests_on::joined(weak);
@@ -102,6 +97,12 @@ impl Tested {
     fn band(&self) -> Option<Band> {
         self.simulated.uncertainty.as_ref().and_then(|u| u.bands).map(|b| b.mean_fabric)
     }
+}
+
+/// What a stiffness along a direction rests on that is not to be relied on.
+fn grounds(task: &Task, stiffness: Option<&Stiffness>, direction: Option<Direction>) -> Vec<Ground> {
+    let along = direction.map_or("", Direction::name);
+    stiffness.map_or_else(Vec::new, |s| rests_on::of_task(task, &format!("{} {along}", s.symbol)))
 }
 
 /// Where a simulated curve begins and ends: as the measured one, or as the instrument goes.

@@ -83,6 +83,13 @@ fn explain_and_list_know_the_codes_and_units() {
     let units = json(&run(&["--json", "list", "units"]));
     let gf = units["items"].as_array().unwrap().iter().find(|u| u["symbol"] == "gf").unwrap();
     assert_eq!(gf["si"], 9.80665e-3);
+    // Nothing is written of other lists, and a folder that is named for one is no silent slip.
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("lists");
+    let written = run(&["--json", "list", "units", "-o", place.to_str().unwrap()]);
+    let error: Value = serde_json::from_slice(&written.stderr).unwrap();
+    assert_eq!((code(&written), error["error"]["code"].as_str()), (2, Some("O050")));
+    assert!(!place.exists());
     assert!(stdout(&run(&["list", "codes"])).contains("\nC004 "));
     assert!(stdout(&run(&["completions", "bash"])).contains("complete -F"));
 }

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::layout::{Column, LabelColumn, Layout};
+use crate::instrument::context::Context;
 use crate::instrument::dialect::{Statistic, TableColumn};
-use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
 use crate::instrument::shape::Region;
 use crate::instrument::sniff::{Number, number};

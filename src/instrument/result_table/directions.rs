@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::layout::{Column, Layout};
-use super::repeats::summed_up;
 use super::row_facts::no_direction;
+use super::summaries::summed_up;
 use super::{Datum, Own, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::contradictions::more_than_direction;

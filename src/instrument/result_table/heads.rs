@@ -2,9 +2,9 @@
 
 use super::layout::{NAME, differ, two_units};
 use crate::instrument::Direction;
+use crate::instrument::context::Context;
 use crate::instrument::dialect::TableColumn;
 use crate::instrument::facets::Facets;
-use crate::instrument::layout::Context;
 use crate::instrument::letters;
 use crate::instrument::raw::Row;
 use crate::instrument::shape::{self, Region};

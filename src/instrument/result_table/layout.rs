@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::heads::{Heads, is_units};
 use crate::instrument::Direction;
+use crate::instrument::context::Context;
 use crate::instrument::dialect::{Statistic, TableColumn};
 use crate::instrument::error::{ReadError, ReadProblem};
 use crate::instrument::facets::Facets;
-use crate::instrument::layout::Context;
 use crate::instrument::raw::Row;
 use crate::instrument::shape::{self, Region};
 use crate::instrument::unit_text::unit;

@@ -3,9 +3,9 @@
 use super::layout::{Column, Layout};
 use super::{Datum, Table};
 use crate::finding::{Finding, Place, ReadFact};
+use crate::instrument::context::Context;
 use crate::instrument::dialect::{Statistic, TableColumn};
 use crate::instrument::facets::Facets;
-use crate::instrument::layout::Context;
 use crate::instrument::unit_text::{split_unit, unit};
 
 /// A column of one specimen or direction, which has no name of its own.
