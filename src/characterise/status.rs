@@ -15,6 +15,8 @@ enum Scope<'a> {
     Values(&'a [Key]),
     /// Every value of a record's test and direction.
     Record(&'a RecordName),
+    /// Every value of the tests and directions of several records.
+    Records(&'a [RecordName]),
     /// One parameter of a record.
     OfRecord(&'a RecordName, Parameter),
     /// A slope of a record by the name of its fit.
@@ -98,6 +100,7 @@ impl FabricSheet {
             Scope::Value(of) => *of == key,
             Scope::Values(of) => of.contains(&key),
             Scope::Record(record) => is_of_record(key, record),
+            Scope::Records(records) => records.iter().any(|record| is_of_record(key, record)),
             Scope::OfRecord(record, parameter) => key.parameter == *parameter && is_of_record(key, record),
             Scope::Slope(record, name) => is_of_record(key, record) && is_slope(key.parameter, name),
             Scope::Test(test) => key.parameter.test() == Some(*test),
@@ -119,6 +122,7 @@ impl FabricSheet {
             Scope::Value(of) => self.gives_modulus(*of, direction),
             Scope::Values(of) => of.iter().any(|of| self.gives_modulus(*of, direction)),
             Scope::Record(record) => is_tensile(record),
+            Scope::Records(records) => records.iter().any(is_tensile),
             Scope::OfRecord(..) => false,
             Scope::Slope(record, slope) => is_tensile(record) && *slope == name,
             Scope::Test(test) => *test == Test::Tensile,
@@ -262,9 +266,11 @@ fn of_reading<'a>(fact: &'a ReadFact, place: Option<&'a Place>) -> Option<(Scope
     let file = || place.map(|place| Scope::File(&place.path));
     match fact {
         ReadFact::AssumedDimension { .. } => Some((file()?, ValueStatus::Assumed)),
-        ReadFact::TwoDirections { .. } | ReadFact::StatedTwice { .. } | ReadFact::StatedFactor { .. } => {
-            Some((file()?, ValueStatus::Doubtful))
-        }
+        ReadFact::SeveralSamples { records, .. } => Some((Scope::Records(records), ValueStatus::Doubtful)),
+        ReadFact::ColumnsAsSpecimens { .. }
+        | ReadFact::TwoDirections { .. }
+        | ReadFact::StatedTwice { .. }
+        | ReadFact::StatedFactor { .. } => Some((file()?, ValueStatus::Doubtful)),
         ReadFact::MoreThanDirection { direction, .. } => {
             Some((Scope::Direction(*direction), ValueStatus::Doubtful))
         }

@@ -196,7 +196,8 @@ fn finished(mut fabric: FabricInput, vocabulary: Vocabulary<'_>) -> FabricInput 
     }
     let samples = samples::samples(&fabric, vocabulary);
     if samples.len() > 1 {
-        let fact = ReadFact::SeveralSamples { samples };
+        let records = samples::averaged(&fabric.measurements, |m| (m.sample.clone(), m.source.path.clone()));
+        let fact = ReadFact::SeveralSamples { samples, records };
         fabric.findings.push(Finding::new(fact).at(Place::file(&fabric.path)));
     }
     // The areal density stands in the header of every file; once is enough.

@@ -263,6 +263,12 @@ problems! {
         reason: String,
     } = "no draped sheet is seen in the picture: {reason}",
         "take the picture from above, the whole sheet on a background that is lighter or darker everywhere";
+    /// A table whose title says that its numbers are no values.
+    "R026" NoValuesByTitle {
+        /// The title, or the name of the sheet or file.
+        title: String,
+    } = "{title:?} says that the numbers are statistics or comparisons, and no values of fabrics",
+        "remove the table, or give it another title if it holds values; standard deviations stand beside their values, or in brackets behind them";
 }
 
 /// `R021`, in the words of a reader.

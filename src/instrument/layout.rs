@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::Direction;
+use super::caption::is_number_of_table;
 use super::column_name::ColumnName;
 use super::context::Context;
 use super::dialect::{HeaderKey, Role};
@@ -467,6 +468,9 @@ impl<'t> Scanner<'t, '_> {
                 let text: Vec<String> = values.into_iter().map(|(t, _)| t).collect();
                 if text.is_empty() {
                     self.header.caption = Some(words);
+                    self.caption_line = line;
+                } else if is_number_of_table(name) {
+                    self.header.caption = Some(format!("{name}: {}", text.join(", ")));
                     self.caption_line = line;
                 }
                 self.header.other.insert(plain, text.join(", "));

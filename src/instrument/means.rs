@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::Measurement;
+use super::branches;
 use super::dialect::Statistic;
 use super::label::Label;
 use super::pairs::of_label;
@@ -38,17 +39,18 @@ pub(super) fn leave_out(
     statistic::finding(what, &left_out, path)
 }
 
-/// The same of files, each by the stem of its name, and of the lines over records.
+/// The same of files, each by the stem of its name, and of the lines over records; branches in two files are one record.
 pub(super) fn leave_out_files(
     records: &mut Vec<Measurement>,
     path: &Path,
     vocabulary: Vocabulary<'_>,
 ) -> Vec<Finding> {
-    let files: Vec<String> = records.iter().map(stem).collect();
+    let mut files: Vec<String> = records.iter().map(stem).collect();
+    let joined = branches::join(records, &mut files, path, vocabulary);
     let of_files = leave_out(records, &files, "files", path, vocabulary);
     let captions: Vec<String> = records.iter().map(|m| m.caption.clone().unwrap_or_default()).collect();
     let of_captions = leave_out(records, &captions, "curves", path, vocabulary);
-    of_files.into_iter().chain(of_captions).collect()
+    joined.into_iter().chain(of_files).chain(of_captions).collect()
 }
 
 fn stem(record: &Measurement) -> String {

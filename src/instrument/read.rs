@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 use super::blanks;
+use super::branches;
 use super::browzwear;
 use super::conditions::StatedConditions;
 use super::context::Context;
@@ -178,15 +179,19 @@ fn text(
     beside_curves(unread, content)
 }
 
-/// R123: result tables that cannot be read cost nothing but themselves beside curves, and are told.
+/// R123: result tables that cannot be read cost nothing but themselves beside curves, and are told; so do those of no values beside others.
 ///
 /// # Errors
-/// The first of them, where there is no curve.
+/// The first of the others, where there is no curve.
 fn beside_curves(unread: Vec<ReadError>, content: &mut FileContent) -> Result<(), ReadError> {
-    if content.measurements.is_empty() {
-        return unread.into_iter().next().map_or(Ok(()), Err);
+    let has_values = !content.results.is_empty() || !content.stiffnesses.is_empty();
+    for error in unread {
+        let is_other = has_values && matches!(error.problem, ReadProblem::NoValuesByTitle { .. });
+        if content.measurements.is_empty() && !is_other {
+            return Err(error);
+        }
+        content.findings.push(not_understood(error));
     }
-    content.findings.extend(unread.into_iter().map(not_understood));
     Ok(())
 }
 
@@ -213,6 +218,7 @@ fn context<'a>(
         kes_units: settings.kes_units || dialect.is_some_and(|d| d.kes_units),
         conditions: settings.conditions.or(&of_dialect),
         label: label(path, vocabulary),
+        sheet: None,
         facets: Seen::default(),
         column_names: Seen::default(),
     }
@@ -264,6 +270,7 @@ fn sheets(
         let dialect = settings.dialects.iter().find(|d| d.matches.is_empty());
         let mut context = context(path, settings, dialect, '\t', decimal);
         context.path = at;
+        context.sheet = Some(sheet.name.clone());
         let own = Label::parse(&sheet.name, context.vocabulary);
         let letter = letters.get(sheet.name.as_str()).copied();
         let own = Label { direction: own.direction.or(letter), ..own };
@@ -302,14 +309,20 @@ fn sheets(
     content.findings.extend(unread.into_iter().map(not_understood));
     beside_curves(tables, content)?;
     let vocabulary = Vocabulary::new(&settings.dialects);
+    let joined = branches::join(&mut content.measurements, &mut of_sheets, path, vocabulary);
+    let is_joined = !joined.is_empty();
+    content.findings.extend(joined);
     let means = means::leave_out(&mut content.measurements, &of_sheets, "sheets", path, vocabulary);
     if let Some(means) = means {
         with_curves.retain(|name| !means::names_mean(name, vocabulary));
         content.findings.push(means);
     }
-    let samples = samples::of_sheets(&with_curves, Vocabulary::new(&settings.dialects));
-    if samples.len() > 1 {
-        content.findings.push(Finding::new(ReadFact::SeveralSamples { samples }).at(Place::file(path)));
+    let samples = samples::of_sheets(&with_curves, vocabulary);
+    if samples.len() > 1 && !is_joined {
+        let mut names = of_sheets.iter();
+        let records = samples::averaged(&content.measurements, |_| names.next().cloned().unwrap_or_default());
+        let fact = ReadFact::SeveralSamples { samples, records };
+        content.findings.push(Finding::new(fact).at(Place::file(path)));
     }
     Ok(())
 }
@@ -342,6 +355,7 @@ fn archive(
         of_files.resize(content.measurements.len(), stem.unwrap_or_default());
     }
     let vocabulary = Vocabulary::new(&settings.dialects);
+    content.findings.extend(branches::join(&mut content.measurements, &mut of_files, path, vocabulary));
     let means = means::leave_out(&mut content.measurements, &of_files, "files", path, vocabulary);
     content.findings.extend(means);
     if content.measurements.is_empty() && content.results.is_empty() && content.fab.is_none() {

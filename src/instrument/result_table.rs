@@ -152,6 +152,7 @@ pub(super) fn read(
             if e.place.line == row.line { table.leave_out(facts.fabric.clone(), e) } else { Err(e) }
         })?;
     }
+    table.hold_values()?;
     table.leave_out_other_spreads();
     table.refuse_negative_deviations()?;
     table.note_cells();
@@ -226,7 +227,7 @@ impl<'t> Table<'t, '_> {
     fn facts<'r>(&mut self, region: &Region<'r>) -> Result<Vec<(&'r Row<'r>, RowFacts)>, ReadError> {
         let mut out = Vec::new();
         let titles = self.titles(region);
-        let (mut group, mut sums_up) = (None, false);
+        let (mut group, mut specimen, mut sums_up) = (None, None, false);
         // Directions within each fabric end with it; those over several fabrics do not.
         let mut within = None;
         for row in &region.rows {
@@ -249,6 +250,7 @@ impl<'t> Table<'t, '_> {
                         group = Some(name);
                         self.end_section(&mut within);
                     }
+                    Title::Specimen(number) => specimen = Some(*number),
                     Title::NoDirection => (self.section, sums_up) = (None, false),
                     Title::Summary(text) => {
                         sums_up = true;
@@ -264,9 +266,9 @@ impl<'t> Table<'t, '_> {
             let facts = self.within_heads(row, region).and_then(|()| self.row_facts(row));
             match facts {
                 Ok(mut facts) => {
-                    if let (Some(group), Some(name)) = (group, &facts.fabric) {
-                        facts.fabric = Some(format!("{group} {name}"));
-                    }
+                    facts.facets.index = facts.facets.index.or(specimen);
+                    facts.group = group.cloned();
+                    facts.fabric = facts.fabric.take().map(|name| facts.in_group(name));
                     out.push((*row, facts));
                 }
                 Err(error) => {
@@ -447,7 +449,11 @@ impl<'t> Table<'t, '_> {
                 self.one_unit(row, column.index, units[0], units[1])?;
             }
             let unit_place = self.unit_place(row, column, facts);
-            let fabric = column.fabric_of(facts.fabric.as_deref()).filter(|_| !facts.summary_of_fabrics);
+            let fabric = match &column.fabric {
+                Some(name) => Some(facts.in_group(name.clone())),
+                None => column.fabric_of(facts.fabric.as_deref()),
+            };
+            let fabric = fabric.filter(|_| !facts.summary_of_fabrics);
             if let Some(fast) = all.fast.filter(|_| all.parameter.is_none()) {
                 let reading = self.reading(row, column.index, cell)?;
                 let (text, place) =

@@ -2,9 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::dialect::TableColumn;
 use super::label::Label;
 use super::vocabulary::Vocabulary;
 use super::{FabricInput, Measurement};
+use crate::kes::RecordName;
 
 /// The samples of a fabric: those that headers and names state, else what the names of files say beside them.
 pub(super) fn samples(fabric: &FabricInput, vocabulary: Vocabulary<'_>) -> Vec<String> {
@@ -31,7 +33,25 @@ pub(super) fn of_sheets(sheets: &[&str], vocabulary: Vocabulary<'_>) -> Vec<Stri
     if stems.len() > 1 {
         return samples.into_iter().map(|name| name.to_string()).collect();
     }
+    // Sheets `F1` and `F2` are fabrics, as laboratories number them; `S1` and `1` count specimens.
+    let of_fabrics = |name: &str| name == "F" || vocabulary.table_column(name) == Some(TableColumn::Fabric);
+    if samples.len() == sheets.len() && samples.len() > 1 && stems.iter().all(|stem| of_fabrics(stem)) {
+        return samples.into_iter().map(|name| name.to_string()).collect();
+    }
     numbered(&labels.iter().collect::<Vec<_>>())
+}
+
+/// One record of each test and direction of which there are several names.
+pub(super) fn averaged<N: Ord>(
+    records: &[Measurement],
+    mut name_of: impl FnMut(&Measurement) -> N,
+) -> Vec<RecordName> {
+    let mut of_test: BTreeMap<_, (RecordName, BTreeSet<N>)> = BTreeMap::new();
+    for record in records {
+        let entry = of_test.entry((record.test, record.direction));
+        entry.or_insert_with(|| (record.record_name(), BTreeSet::new())).1.insert(name_of(record));
+    }
+    of_test.into_values().filter(|(_, names)| names.len() > 1).map(|(record, _)| record).collect()
 }
 
 /// A name without what stands behind its last letter.

@@ -105,12 +105,19 @@ fn kind(row: &Row<'_>, context: &Context<'_>) -> Kind {
     if let Some(direction) = section(row, context) {
         return Kind::Section(direction);
     }
-    if states_name(row, context) {
+    if states_name(row, context) || row.filled().any(|(_, cell)| !numbered(&cell.text, context).is_empty()) {
         return Kind::Other;
     }
     let (mut words, mut numbers, mut units, mut unknown, mut dashes) = (0, 0, 0, 0, 0);
     let mut counting = true;
     let says = facets(row, context);
+    // `Specimen 2` alone is a title of rows, and heads no column.
+    if row
+        .filled()
+        .all(|(i, _)| i == 0 && says[i].index.is_some() && !says[i].names_value() && !says[i].unknown)
+    {
+        return Kind::Other;
+    }
     for (index, cell) in row.filled() {
         let f = &says[index];
         if is_gap(&cell.text) {
@@ -169,6 +176,17 @@ fn states_name(row: &Row<'_>, context: &Context<'_>) -> bool {
         }
         _ => false,
     }
+}
+
+/// The directions that a key gives to numbers behind symbols: `1 = weft, 2 = warp`.
+pub(super) fn numbered(text: &str, context: &Context<'_>) -> Vec<(usize, Direction)> {
+    let marks = [',', ';', '(', ')'];
+    let entry = |part: &str| {
+        let (number, name) = part.split_once(['=', ':'])?;
+        let number = number.trim().parse().ok().filter(|n| (1..=2).contains(n))?;
+        Some((number, context.vocabulary.direction_exactly(name.trim())?))
+    };
+    text.split(marks).filter_map(entry).collect()
 }
 
 /// Whether a row numbers columns: nothing in its first cell, then 1, 2 and so on, and perhaps from 1 again, with statistics between.

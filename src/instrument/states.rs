@@ -25,9 +25,12 @@ pub(super) fn told_apart(entries: &[String], decimal: char) -> Option<[String; 2
         Some(numbers) => {
             let whole = numbers.iter().all(|v| v.fract() == 0.0);
             let round = numbers.iter().all(|v| v % 5.0 == 0.0);
-            let set =
-                (numbers.len() > 2 || round || has_word) && numbers.windows(2).all(|w| w[1] > w[0] + 1.0);
-            whole && (grouped || set)
+            let rises = numbers.windows(2).all(|w| w[1] > w[0] + 1.0);
+            // Nothing of a treatment beside some of it; the second of two rows is none of 24.
+            let from_none = numbers[0] == 0.0 && numbers.last().is_some_and(|last| *last > 2.0);
+            let set = (numbers.len() > 2 || round || has_word || from_none) && rises;
+            let years = numbers.iter().all(|v| (1900.0..2100.0).contains(v));
+            whole && (grouped || set || years)
         }
         None => {
             // `record 12` and `record 13` count; dates and times have no letters.
@@ -69,6 +72,8 @@ mod tests {
             &["0", "5", "10"],
             &["0", "90"],
             &["0", "0", "5", "5"],
+            &["0", "24"],
+            &["2019", "2020"],
             &["X", "X", "Y"],
             &["0 washes", "5 washes"],
             &["20/cm", "24/cm"],

@@ -214,3 +214,87 @@ fn states_in_a_long_table_are_told() {
     let described = "fabric,description,variable,value,unit\na,rigidity,B,0.08,gf·cm²/cm\na,stiffness,G,0.8,gf/(cm·deg)\n";
     assert!(told(&read(described), "R126").is_empty());
 }
+
+/// Lines of one text over rows whose names come again are the states of their fabrics, whichever way the table lies; titles of other
+/// parameters are none.
+#[test]
+fn titles_over_rows_that_come_again_are_states() {
+    let names = |text: &str| {
+        let found = values(&read(text));
+        found.into_iter().map(|(name, .., mean)| (name, mean)).collect::<Vec<_>>()
+    };
+    let states = |one: &str, other: &str| {
+        [
+            (format!("{one} F1"), 0.08),
+            (format!("{one} F2"), 0.12),
+            (format!("{other} F1"), 0.06),
+            (format!("{other} F2"), 0.1),
+        ]
+    };
+    for [one, other] in [["Before washing", "After 5 washes"], ["65 % RH", "90 % RH"]] {
+        let mut known = states(one, other).to_vec();
+        known.sort_by(|a, b| a.0.cmp(&b.0));
+        let across =
+            format!("Fabric,B warp (gf·cm²/cm)\n{one}\nF1,0.08\nF2,0.12\n{other}\nF1,0.06\nF2,0.1\n");
+        assert_eq!(names(&across), known, "{across}");
+        let down = format!("Parameter,Direction,F1,F2\n{one}\nB,warp,0.08,0.12\n{other}\nB,warp,0.06,0.1\n");
+        assert_eq!(names(&down), known, "{down}");
+    }
+    let tests = read("Parameter,Direction,F1,F2\nBending\nB,warp,0.08,0.12\nShear\nG,warp,0.6,0.1\n");
+    assert_eq!(values(&tests).iter().filter(|v| v.0 == "F1").count(), 2, "{:?}", tests.results);
+    // One specimen below the other is no fabric.
+    let counted =
+        read("Parameter,Direction,F1,F2\nSpecimen 1\nB,warp,0.08,0.12\nSpecimen 2\nB,warp,0.06,0.1\n");
+    assert!(values(&counted).contains(&("F1".into(), Parameter::B, WARP, 0.07)), "{:?}", counted.results);
+}
+
+/// What a title or a sheet calls deviations or correlations is refused, and left out beside values.
+#[test]
+fn tables_of_no_values_by_their_titles() {
+    let table = "Fabric,B warp,B weft\nF1,0.0141,0.0153\n";
+    for title in [
+        "Table A2: Standard deviations of the KES parameters",
+        "Correlation with the hand",
+        "Change by washing (%)",
+    ] {
+        assert_eq!(attempt(&format!("{title}\n{table}")).unwrap_err().code(), "R026", "{title}");
+    }
+    for title in [
+        "Table 2: Means and standard deviations",
+        "Results of standard fabrics",
+        "Table 1: KES parameters",
+        "Changes of B by washing",
+    ] {
+        assert_eq!(values(&read(&format!("{title}\n{table}"))).len(), 2, "{title}");
+    }
+    // In brackets stands what the title speaks of.
+    assert_eq!(values(&read("Standard deviations\nFabric,B warp (gf·cm²/cm)\nF1,0.08 (0.01)\n")).len(), 1);
+    let both = read(
+        "Table 1: Means\nFabric,B warp (gf·cm²/cm)\nF1,0.0812\n\nTable 2: Standard deviations\nFabric,B warp (gf·cm²/cm)\nF1,0.0141\n",
+    );
+    assert_eq!(values(&both), [("F1".into(), Parameter::B, WARP, 0.0812)]);
+    assert_eq!(told(&both, "R123").len(), 1, "{:?}", both.findings);
+}
+
+/// `1 = weft, 2 = warp` above the table goes before the use of the literature, and needs no remark.
+#[test]
+fn a_key_says_what_the_numbers_behind_symbols_are() {
+    for key in ["1 = weft, 2 = warp", "\"1 = weft; 2 = warp\"", "(1: weft; 2: warp)"] {
+        let found = read(&format!("{key}\nFabric,B-1,B-2\nF1,0.0533,0.0812\n"));
+        assert_eq!(
+            values(&found),
+            [("F1".into(), Parameter::B, WARP, 0.0812), ("F1".into(), Parameter::B, WEFT, 0.0533)],
+            "{key}"
+        );
+        assert!(told(&found, "R111").is_empty(), "{key}");
+    }
+    let bare = read("Fabric,B-1,B-2\nF1,0.0812,0.0533\n");
+    assert_eq!(told(&bare, "R111").len(), 1);
+}
+
+/// Each fabric whose value lacks a direction is told, as each has a doubtful value.
+#[test]
+fn every_fabric_without_a_direction_is_told() {
+    let found = read("Fabric,B warp,B\nF1,0.08,0.05\nF2,0.12,0.1\n");
+    assert_eq!(told(&found, "R136").len(), 2, "{:?}", found.findings);
+}

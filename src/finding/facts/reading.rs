@@ -30,6 +30,8 @@ super::facts! {
         "R105" SeveralSamples {
             /// Their names.
             samples: Vec<String>,
+            /// A record of each test and direction in which they are averaged.
+            records: Vec<RecordName>,
         } = "several samples are read as one fabric: {}; give each its own folder", samples.join(", ");
         /// Two statements of the yarn direction.
         "R106" TwoDirections {
@@ -296,6 +298,13 @@ super::facts! {
         /// An unloading branch below its loading branch that rises as well.
         "R148" UnloadingTurned {} = "the branch below the word for unloading begins where loading began and ends where it ended: it is read \
              backwards, as the specimen was unloaded";
+        /// Loading and unloading in two files or sheets.
+        "R149" BranchesJoined {
+            /// The names of the two, loading first.
+            parts: [String; 2],
+            /// The record that they make.
+            record: RecordName,
+        } = "{:?} and {:?} are read as loading and unloading of one specimen: give them other names if they are two", parts[0], parts[1];
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

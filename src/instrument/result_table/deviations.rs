@@ -6,6 +6,7 @@ use super::layout::{Column, Layout};
 use super::row_facts::RowFacts;
 use super::{Datum, Own, Table};
 use crate::finding::{Finding, Place, ReadFact};
+use crate::instrument::caption::{is_name_of_no_values, is_of_no_values};
 use crate::instrument::cell::parts;
 use crate::instrument::context::Context;
 use crate::instrument::dialect::{Statistic, TableColumn};
@@ -94,6 +95,21 @@ impl Layout {
 }
 
 impl Table<'_, '_> {
+    /// # Errors
+    /// R026 where the title or the name of the sheet says that these are no values, and nothing in the table does.
+    pub(super) fn hold_values(&self) -> Result<(), ReadError> {
+        let v = self.context.vocabulary;
+        let says_more = |d: &Datum| d.own.is_some() || d.sd.is_some() || d.statistic.is_some();
+        if self.data.iter().any(says_more) || self.data.is_empty() {
+            return Ok(());
+        }
+        let title = self.header.caption.as_ref().filter(|title| is_of_no_values(title, v));
+        let name = || self.context.sheet.as_ref().filter(|name| is_name_of_no_values(name, v));
+        let Some(title) = title.or_else(name) else { return Ok(()) };
+        let problem = ReadProblem::NoValuesByTitle { title: title.clone() };
+        Err(self.context.error(self.layout.line, 0, problem))
+    }
+
     /// R139: numbers behind values that are no standard deviations, as the head or the line above the table says, or as one in brackets shows that
     /// is more than half of its mean: all of that column are left out.
     pub(super) fn leave_out_other_spreads(&mut self) {

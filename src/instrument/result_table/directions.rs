@@ -12,6 +12,7 @@ use crate::instrument::curves::across_in_name;
 use crate::instrument::dialect::{HeaderKey, TableColumn};
 use crate::instrument::error::ReadError;
 use crate::instrument::raw::Row;
+use crate::instrument::shape;
 use crate::instrument::vocabulary::Vocabulary;
 use crate::instrument::words::normalised;
 use crate::instrument::{Direction, Parameter};
@@ -201,15 +202,33 @@ impl Table<'_, '_> {
             self.numbers_of_specimens();
             return;
         }
+        let key = self.key_of_numbers();
+        let is_stated = key.is_some();
+        let key = key.unwrap_or([Direction::Warp, Direction::Weft]);
+        let direction = |index: Option<usize>| index.and_then(|n| key.get(n.wrapping_sub(1)).copied());
         for d in self.data.iter_mut().filter(|d| d.parameter.is_directional()) {
-            (d.direction, d.index) = (numbered_direction(d.index), None);
+            (d.direction, d.index) = (direction(d.index), None);
         }
         for f in &mut self.fast {
-            f.direction = f.direction.or(numbered_direction(f.index));
+            f.direction = f.direction.or(direction(f.index));
         }
-        if !is_fast_table {
+        if !is_fast_table && !is_stated {
             let place = Place::at(self.context.path, self.layout.line, 0);
             self.findings.push(Finding::new(ReadFact::NumbersAsDirections {}).at(place));
+        }
+    }
+
+    /// What a line above the table says that the numbers 1 and 2 are.
+    fn key_of_numbers(&self) -> Option<[Direction; 2]> {
+        let other = self.header.other.iter().map(|(name, value)| format!("{name} = {value}"));
+        let lines = other.chain(self.header.caption.clone());
+        let mut key: Vec<(usize, Direction)> =
+            lines.flat_map(|line| shape::numbered(&line, self.context)).collect();
+        key.sort_unstable();
+        key.dedup();
+        match key[..] {
+            [(1, first), (2, second)] if first != second => Some([first, second]),
+            _ => None,
         }
     }
 
@@ -226,13 +245,18 @@ impl Table<'_, '_> {
             .iter()
             .filter(|d| d.direction.is_none() && directed.contains(&(d.fabric.as_deref(), d.parameter)))
             .collect();
-        let parameters: BTreeSet<Parameter> = found.iter().map(|d| d.parameter).collect();
-        let keys: Vec<Key> =
-            parameters.into_iter().map(|parameter| Key { parameter, direction: None }).collect();
-        if let Some(first) = found.first() {
-            let place = Place::at(self.context.path, first.line, first.column);
-            self.findings.push(Finding::new(ReadFact::WithoutDirection { keys }).at(place));
+        // Each fabric has its own, whose values it makes doubtful.
+        let mut of_fabric: BTreeMap<Option<&str>, (&Datum, BTreeSet<Parameter>)> = BTreeMap::new();
+        for d in found {
+            let entry = of_fabric.entry(d.fabric.as_deref());
+            entry.or_insert_with(|| (*d, BTreeSet::new())).1.insert(d.parameter);
         }
+        let findings = of_fabric.into_values().map(|(first, parameters)| {
+            let keys = parameters.into_iter().map(|parameter| Key { parameter, direction: None }).collect();
+            let place = Place::at(self.context.path, first.line, first.column);
+            Finding::new(ReadFact::WithoutDirection { keys }).at(place)
+        });
+        self.findings.extend(findings.collect::<Vec<_>>());
     }
 
     /// R121: `B1, B2, B3` of no direction.
@@ -346,13 +370,4 @@ fn last_word(text: &str) -> Option<(&str, &str)> {
     let text = text.trim_end_matches(is_mark);
     let at = text.rfind(is_mark).map_or(0, |at| at + text[at..].chars().next().map_or(0, char::len_utf8));
     (!text.is_empty()).then(|| text.split_at(at))
-}
-
-/// The direction that 1 and 2 behind a symbol stand for.
-const fn numbered_direction(index: Option<usize>) -> Option<Direction> {
-    match index {
-        Some(1) => Some(Direction::Warp),
-        Some(2) => Some(Direction::Weft),
-        _ => None,
-    }
 }

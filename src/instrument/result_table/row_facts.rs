@@ -14,6 +14,8 @@ pub(super) enum Title {
     Fabric(String),
     /// Their names come again below other titles: each is of a fabric of this group.
     Group(String),
+    /// They are of this specimen.
+    Specimen(usize),
     /// They are of no direction, in a table whose sections are directions.
     NoDirection,
     /// They sum up the sections above, in the words of the title.
@@ -24,6 +26,8 @@ pub(super) enum Title {
 #[derive(Clone, Debug, Default)]
 pub(super) struct RowFacts {
     pub(super) fabric: Option<String>,
+    /// The title above it, in which fabrics of the same names stand as in others.
+    pub(super) group: Option<String>,
     pub(super) facets: Facets,
     /// The columns that state the direction and the parameter.
     pub(super) direction_at: Option<usize>,
@@ -39,6 +43,11 @@ pub(super) struct RowFacts {
 }
 
 impl RowFacts {
+    /// The name of a fabric with that of its group.
+    pub(super) fn in_group(&self, name: String) -> String {
+        self.group.as_ref().map_or(name.clone(), |group| format!("{group} {name}"))
+    }
+
     /// Takes what a label says: direction, number, statistic.
     pub(super) fn take(&mut self, f: &Facets, text: &str) {
         if f.parameter.is_some() || f.unknown {

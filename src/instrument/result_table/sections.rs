@@ -33,22 +33,46 @@ impl Table<'_, '_> {
         if !lines.iter().any(|line| matches!(line, Line::Text(..))) {
             return BTreeMap::new();
         }
+        let counted = self.titles_of_specimens(&lines);
+        if !counted.is_empty() {
+            return counted;
+        }
         let named = self.titles_of_fabrics(&lines);
         if named.is_empty() { ends_of_sections(&lines, self.context) } else { named }
+    }
+
+    /// `Specimen 1` and `Specimen 2` over rows of parameters, where every title is one.
+    fn titles_of_specimens(&self, lines: &[Line<'_>]) -> BTreeMap<usize, Title> {
+        let mut found = BTreeMap::new();
+        for line in lines.iter().filter(|_| self.layout.down) {
+            let Line::Text(row, text) = line else { continue };
+            let says = self.context.facets(text);
+            let Some(number) = says.index.filter(|_| !says.unknown && !says.names_value()) else {
+                return BTreeMap::new();
+            };
+            found.insert(row.line, Title::Specimen(number));
+        }
+        if found.len() > 1 { found } else { BTreeMap::new() }
     }
 
     /// Rows of a name alone over rows of specimens, parameters or names that come again: fabrics, or states of one. There are several, and
     /// the first row is one; a single one may be a remark.
     fn titles_of_fabrics(&self, lines: &[Line<'_>]) -> BTreeMap<usize, Title> {
         let Some(first) = self.layout.labels.first() else { return BTreeMap::new() };
-        let mut below: Vec<(usize, &str, BTreeSet<&str>)> = Vec::new();
+        // Of a row that is a parameter, its direction and unit are parts of what comes again.
+        let labels = if self.layout.down { &self.layout.labels[..] } else { std::slice::from_ref(first) };
+        let mut below: Vec<(usize, &str, BTreeSet<String>)> = Vec::new();
         for line in lines {
             match line {
                 Line::Text(row, text) if row.get(first.index).is_some() && is_name(text, self.context) => {
                     below.push((row.line, text, BTreeSet::new()));
                 }
                 Line::Values(row) => match below.last_mut() {
-                    Some((_, _, names)) => names.extend(row.get(first.index)),
+                    Some((_, _, names)) => {
+                        let cells: Vec<&str> =
+                            labels.iter().filter_map(|label| row.get(label.index)).collect();
+                        names.insert(cells.join("\t"));
+                    }
                     None => return BTreeMap::new(),
                 },
                 _ => {}
@@ -64,7 +88,7 @@ impl Table<'_, '_> {
         let title: fn(String) -> Title = match (counts, self.layout.down) {
             (true, _) => Title::Fabric,
             (_, true) if come_again && !is_named => Title::Fabric,
-            (_, false) if come_again && holds_names => Title::Group,
+            (_, down) if come_again && (down || holds_names) => Title::Group,
             _ => return BTreeMap::new(),
         };
         if below.len() < 2 {
@@ -76,7 +100,9 @@ impl Table<'_, '_> {
 
 fn is_name(text: &str, context: &Context<'_>) -> bool {
     let says = context.facets(text);
-    let means_nothing = says.statistic.is_none() && says.direction.is_none() && says.index.is_none();
+    // The number in `After 5 washes` counts no specimens.
+    let counts = says.index.is_some() && !says.unknown;
+    let means_nothing = says.statistic.is_none() && says.direction.is_none() && !counts;
     means_nothing && text.chars().any(char::is_alphabetic) && text.chars().count() <= NAME
 }
 

@@ -1,0 +1,121 @@
+//! Loading and unloading of one specimen in two files, sheets or files of an archive: `cotton_warp_load`, `cotton_warp_unload`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::dialect::BranchColumn;
+use super::vocabulary::Vocabulary;
+use super::{Direction, Measurement, Test};
+use crate::finding::{Finding, Place, ReadFact};
+use crate::quantity::Curve;
+
+/// What two branches of one specimen have in common: test and direction, and the name without the word for the branch.
+type OfRecord = (Test, Option<Direction>, String);
+
+/// Makes one record of a loading and an unloading branch, where the names of two differ by the words for these alone, and tells it (R149). Each
+/// record has its name; names of records that go are taken out.
+pub(super) fn join(
+    records: &mut Vec<Measurement>,
+    names: &mut Vec<String>,
+    path: &Path,
+    vocabulary: Vocabulary<'_>,
+) -> Vec<Finding> {
+    let mut of_record: BTreeMap<OfRecord, Vec<(usize, BranchColumn)>> = BTreeMap::new();
+    for (at, (record, name)) in records.iter().zip(names.iter()).enumerate() {
+        if let Some((rest, branch)) = split(name, vocabulary) {
+            of_record.entry((record.test, record.direction, rest)).or_default().push((at, branch));
+        }
+    }
+    let (mut gone, mut found) = (Vec::new(), Vec::new());
+    for branches in of_record.into_values() {
+        // Several records of one branch are specimens, and nobody says which belong together.
+        let (loading, unloading) = match branches[..] {
+            [(a, BranchColumn::Loading), (b, BranchColumn::Unloading)]
+            | [(b, BranchColumn::Unloading), (a, BranchColumn::Loading)] => (a, b),
+            _ => continue,
+        };
+        let parts = [names[loading].clone(), names[unloading].clone()];
+        let branch = records[unloading].clone();
+        let record = &mut records[loading];
+        append(record, &branch);
+        record.sample =
+            record.sample.take().map(|sample| split(&sample, vocabulary).map_or(sample, |(rest, _)| rest));
+        record.sample.take_if(|sample| sample.is_empty());
+        let fact = ReadFact::BranchesJoined { parts, record: record.record_name() };
+        found.push(Finding::new(fact).at(Place::at(path, record.lines.first().copied().unwrap_or(0), 0)));
+        gone.push(unloading);
+    }
+    gone.sort_unstable();
+    for at in gone.into_iter().rev() {
+        records.remove(at);
+        names.remove(at);
+    }
+    found
+}
+
+/// Puts an unloading branch behind a record, from the end where loading ended.
+fn append(record: &mut Measurement, branch: &Measurement) {
+    let end = record.curve.x.last().copied().unwrap_or_default();
+    let distance = |x: Option<&f64>| x.map_or(f64::INFINITY, |x| (x - end).abs());
+    let is_turned = distance(branch.curve.x.last()) < distance(branch.curve.x.first());
+    let mut points: Vec<((f64, f64), usize)> =
+        branch.curve.points().zip(branch.lines.iter().copied()).collect();
+    if is_turned {
+        points.reverse();
+    }
+    let (points, lines): (Vec<_>, Vec<_>) = points.into_iter().unzip();
+    record.curve = Curve::from_points(record.curve.points().chain(points));
+    record.lines.extend(lines);
+}
+
+/// A name without the word for a branch, and the branch.
+fn split(name: &str, vocabulary: Vocabulary<'_>) -> Option<(String, BranchColumn)> {
+    let words: Vec<&str> = name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).collect();
+    let mut branches = words.iter().enumerate().filter_map(|(at, word)| Some((at, vocabulary.branch(word)?)));
+    let (at, branch) = branches.next().filter(|_| branches.next().is_none())?;
+    let rest: Vec<&str> = words.iter().enumerate().filter(|(i, _)| *i != at).map(|(_, word)| *word).collect();
+    Some((rest.join(" "), branch))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(points: [(f64, f64); 3], first: usize) -> Measurement {
+        Measurement {
+            test: Test::Tensile,
+            sample: None,
+            direction: Some(Direction::Warp),
+            specimen: 1,
+            conditions: super::super::standard_conditions(Test::Tensile),
+            curve: Curve::from_points(points),
+            lines: (first..first + 3).collect(),
+            source: super::super::Source::default(),
+            metadata: BTreeMap::new(),
+            caption: None,
+        }
+    }
+
+    #[test]
+    fn two_branches_are_one_record_and_four_are_none() {
+        let v = Vocabulary::new(&[]);
+        let up = record([(0.0, 0.0), (0.5, 2.0), (1.0, 4.0)], 2);
+        let down = record([(0.0, 0.0), (0.5, 1.0), (1.0, 4.0)], 2);
+        let names = |list: &[&str]| list.iter().map(|n| (*n).to_string()).collect::<Vec<_>>();
+        let mut records = vec![down.clone(), up.clone()];
+        let mut called = names(&["cotton_warp_unload", "cotton_warp_load"]);
+        assert_eq!(join(&mut records, &mut called, Path::new("lab"), v).len(), 1);
+        assert_eq!(records.len(), 1);
+        assert_eq!(records[0].curve.x, [0.0, 0.5, 1.0, 1.0, 0.5, 0.0]);
+        assert_eq!(records[0].curve.y, [0.0, 2.0, 4.0, 4.0, 1.0, 0.0]);
+        assert_eq!(records[0].lines, [2, 3, 4, 4, 3, 2]);
+        for called in [&["a_load", "b_unload"][..], &["a_load", "a_load"], &["a_1", "a_2"]] {
+            let mut records = vec![up.clone(), down.clone()];
+            assert!(join(&mut records, &mut names(called), Path::new("lab"), v).is_empty(), "{called:?}");
+            assert_eq!(records.len(), 2);
+        }
+        let mut records = vec![up.clone(), down.clone(), up, down];
+        let mut called = names(&["load", "unload", "load", "unload"]);
+        assert!(join(&mut records, &mut called, Path::new("lab"), v).is_empty());
+    }
+}

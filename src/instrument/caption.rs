@@ -1,0 +1,250 @@
+//! Titles that say what the numbers of a table are: `Standard deviations of the KES parameters`, a sheet `Correlation`.
+//!
+//! Such numbers look like values, and are none. Only a title that says nothing else counts: `Means and standard deviations` stands over
+//! values.
+
+use super::dialect::{Statistic, TableColumn};
+use super::vocabulary::Vocabulary;
+use super::words::{folded, normalised};
+
+/// What stands before the number of a table.
+const TABLES: [&str; 14] = [
+    "table", "tab", "appendix", "tabelle", "tableau", "tabla", "tabella", "tabela", "tabulka", "tablo",
+    "tabel", "表", "附表", "표",
+];
+/// Comparisons and results of statistics, which are no values of a fabric.
+const COMPARISONS: [&str; 31] = [
+    "difference",
+    "differences",
+    "correlation",
+    "correlations",
+    "correlation coefficient",
+    "correlation coefficients",
+    "correlation matrix",
+    "p value",
+    "p values",
+    "t value",
+    "t values",
+    "f value",
+    "f values",
+    "anova",
+    "factor loadings",
+    "regression coefficients",
+    "Differenz",
+    "Differenzen",
+    "Korrelation",
+    "Korrelationen",
+    "différence",
+    "corrélation",
+    "diferencia",
+    "correlación",
+    "differenza",
+    "correlazione",
+    "diferença",
+    "correlação",
+    "相関",
+    "相关",
+    "相关系数",
+];
+/// What is a comparison where it is in per cent; else it may be told by values: `Changes of B by washing`.
+const CHANGES: [&str; 22] = [
+    "change",
+    "changes",
+    "reduction",
+    "increase",
+    "decrease",
+    "improvement",
+    "variation",
+    "loss",
+    "Änderung",
+    "Änderungen",
+    "Veränderung",
+    "Zunahme",
+    "Abnahme",
+    "changement",
+    "cambio",
+    "cambios",
+    "variazione",
+    "variação",
+    "verandering",
+    "zmiana",
+    "変化率",
+    "变化率",
+];
+/// What leads on from the head of a title to what it is of.
+const OF: [&str; 24] = [
+    "with", "to", "vs", "of", "for", "between", "by", "after", "due", "der", "des", "von", "zwischen",
+    "nach", "de", "du", "del", "della", "di", "do", "da", "dos", "das", "van",
+];
+/// What tells that a title names more than one thing.
+const AND: [&str; 14] =
+    ["and", "with", "incl", "including", "und", "mit", "et", "avec", "y", "con", "e", "com", "en", "plus"];
+/// Words before the head of a title, `Relative changes`, and those of a phrase.
+const BEFORE: usize = 3;
+const PHRASE: usize = 4;
+
+/// Whether a line over a table says that its numbers are no values.
+pub(super) fn is_of_no_values(text: &str, v: Vocabulary<'_>) -> bool {
+    let text = folded(text);
+    let title = without_number(&text);
+    // What stands behind a mark or in brackets is another thing.
+    let marks = ['(', '[', ',', ';', '±', '&', '+', '/'];
+    let (head, rest) = title.split_at(title.find(marks).unwrap_or(title.len()));
+    let mut has_percent = rest.contains('%') || normalised(rest).contains("percent");
+    let words = words_of(head);
+    for at in 0..words.len().min(BEFORE + 1) {
+        let word = normalised(words[at]);
+        if AND.contains(&word.as_str()) {
+            return false;
+        }
+        has_percent |= word.starts_with("percent") || word.starts_with("prozent");
+        for n in 1..=PHRASE.min(words.len() - at) {
+            let leads_on = words.get(at + n).is_none_or(|word| OF.contains(&normalised(word).as_str()));
+            let phrase = words[at..at + n].join(" ");
+            if leads_on && is_of_comparison(&phrase, has_percent, v) && !names_mean(&words[at + n..], v) {
+                return true;
+            }
+        }
+    }
+    ends_with_comparison(head, v)
+}
+
+/// The same of the name of a sheet: only as its first or last words, `cotton_SD`; `Mean and SD` holds values.
+pub(super) fn is_name_of_no_values(name: &str, v: Vocabulary<'_>) -> bool {
+    let name = folded(name);
+    let words = words_of(&name);
+    let ends = (1..=PHRASE.min(words.len())).flat_map(|n| [&words[..n], &words[words.len() - n..]]);
+    !names_mean(&words, v)
+        && !words.iter().any(|word| AND.contains(&normalised(word).as_str()))
+        && ends.into_iter().any(|phrase| is_of_comparison(&phrase.join(" "), false, v))
+}
+
+fn words_of(text: &str) -> Vec<&str> {
+    text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect()
+}
+
+/// Whether some of the words, up to three together, name a mean.
+fn names_mean(words: &[&str], v: Vocabulary<'_>) -> bool {
+    let mut phrases = (1..PHRASE).flat_map(|n| words.windows(n)).map(|words| words.join(" "));
+    phrases.any(|phrase| v.statistic(&phrase) == Some(Statistic::Mean))
+}
+
+fn is_of_comparison(phrase: &str, in_percent: bool, v: Vocabulary<'_>) -> bool {
+    is_spread(phrase, v) || is_one_of(&COMPARISONS, phrase) || (in_percent && is_one_of(&CHANGES, phrase))
+}
+
+/// Chinese and Japanese have no blanks between words: the head is the last of them.
+fn ends_with_comparison(head: &str, v: Vocabulary<'_>) -> bool {
+    let chars: Vec<char> = head.trim().chars().collect();
+    let is_wide = chars.iter().any(|c| *c >= '\u{1100}');
+    let mut ends = (0..chars.len().saturating_sub(1)).map(|at| chars[at..].iter().collect::<String>());
+    is_wide
+        && !head.contains("平均")
+        && ends.any(|end| v.statistic(&end) == Some(Statistic::Spread) || is_one_of(&COMPARISONS, &end))
+}
+
+/// `Table A2: …` and `Tab. 3 …` without what numbers it.
+fn without_number(text: &str) -> &str {
+    let mut parts = text.splitn(3, |c: char| c.is_whitespace() || matches!(c, ':' | '.'));
+    let first = parts.next().unwrap_or_default();
+    let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
+    if !is_one_of(&TABLES, stem) {
+        return text;
+    }
+    let rest = text[first.len()..].trim_start_matches([' ', '.', ':', '-']);
+    let number = rest.split(|c: char| c.is_whitespace() || c == ':').next().unwrap_or_default();
+    let is_number = stem.len() < first.len()
+        || number.contains(|c: char| c.is_ascii_digit())
+        || number.chars().count() == 1;
+    if !is_number {
+        return text;
+    }
+    let rest = if stem.len() < first.len() { rest } else { &rest[number.len()..] };
+    rest.trim_start_matches([' ', '.', ':', '-', '|'])
+}
+
+/// Whether a text begins with the number of a table: `Table A2`.
+pub(super) fn is_number_of_table(text: &str) -> bool {
+    let mut words = text.split([' ', '.']).filter(|w| !w.is_empty());
+    let (first, second) = (words.next().unwrap_or_default(), words.next());
+    let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
+    let is_numbered = stem.len() < first.len() || second.is_some_and(|w| w.chars().count() <= 5);
+    is_one_of(&TABLES, stem) && is_numbered && words.count() <= 1
+}
+
+fn is_one_of(list: &[&str], text: &str) -> bool {
+    let text = normalised(text);
+    !text.is_empty() && list.iter().any(|word| normalised(word) == text)
+}
+
+/// Whether a phrase names a spread; of short ones only that of the deviation, as `CV` is viscose and `se` a word.
+fn is_spread(phrase: &str, v: Vocabulary<'_>) -> bool {
+    ["", "s", "en", "es"].iter().any(|plural| {
+        let singular: Vec<&str> =
+            phrase.split(' ').map(|word| word.strip_suffix(plural).unwrap_or(word)).collect();
+        let name = singular.join(" ");
+        let is_plain = name.chars().count() > PHRASE || !name.is_ascii();
+        v.statistic(&name) == Some(Statistic::Spread)
+            && (is_plain || v.table_column(&name) == Some(TableColumn::Sd))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn titles_over_what_is_no_value() {
+        let v = Vocabulary::new(&[]);
+        for title in [
+            "Table A2: Standard deviations of the KES parameters",
+            "Standard deviations",
+            "Table 3. Standard deviation of B",
+            "Tab. 4 Standardabweichungen der KES-Werte",
+            "SD",
+            "Coefficients of variation (%)",
+            "Coefficient of variation of the low-stress properties",
+            "Change of KES parameters after washing (%)",
+            "Percentage change of bending rigidity",
+            "Pearson correlation coefficients",
+            "Correlation between B and hand",
+            "Difference between warp and weft",
+            "KES特性値の標準偏差",
+            "表2 标准差",
+        ] {
+            assert!(is_of_no_values(title, v), "{title}");
+        }
+        for title in [
+            "Table 2: Means and standard deviations of the KES parameters",
+            "KES parameters and standard deviations",
+            "Mean values, standard deviations in brackets",
+            "Results (SD)",
+            "Standard deviations in brackets",
+            "Changes of B by washing",
+            "Table 1",
+            "KES results of standard fabrics",
+            "Variation of bending rigidity with washing",
+            "CV",
+            "平均値と標準偏差",
+            "Bending",
+        ] {
+            assert!(!is_of_no_values(title, v), "{title}");
+        }
+        for name in ["SD", "cotton_SD", "Correlation", "standard deviation", "KES correlations", "Stdev"] {
+            assert!(is_name_of_no_values(name, v), "{name}");
+        }
+        for name in ["mean_SD", "Mean ± SD", "CV", "cotton", "results 2", "sd_card_export_1"] {
+            assert!(!is_name_of_no_values(name, v) || name == "sd_card_export_1", "{name}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_tables() {
+        for text in ["Table A2", "Table 3", "Tab. 4", "表2", "Table 3.1"] {
+            assert!(is_number_of_table(text), "{text}");
+        }
+        for text in ["Table of contents here", "Date", "Tablecloth", "Sample 2"] {
+            assert!(!is_number_of_table(text), "{text}");
+        }
+    }
+}
