@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::facets::repeats;
 use super::sniff::{Number, number};
 use super::unit_text::{is_angular, unit};
 use super::value::{Printed, printed};
@@ -22,13 +23,37 @@ pub(super) struct Parts<'c> {
     pub unit: Option<String>,
     /// Whether the deviation alone has the sign of per cent behind it: `0.081 ± 3 %`.
     pub percent_deviation: bool,
+    /// How many repeats the number is of, as it says itself: `0.081 ± 0.003 (n = 5)`.
+    pub repeats: Option<usize>,
 }
 
 /// Takes a cell apart.
 pub(super) fn parts(cell: &str, decimal: char) -> Parts<'_> {
+    match without_repeats(cell) {
+        Some((bare, repeats)) => Parts { repeats: Some(repeats), ..parts_of(bare, decimal) },
+        None => parts_of(cell, decimal),
+    }
+}
+
+/// A cell without the number of repeats behind it, and that.
+fn without_repeats(cell: &str) -> Option<(&str, usize)> {
+    let text = cell.trim_end_matches([')', ']', ' ']);
+    let at = text.rfind(['n', 'N']).filter(|at| text[*at..].contains('='))?;
+    let bare = text[..at].trim_end_matches(['(', '[', ',', ';', ' ']);
+    let is_apart = text[bare.len()..at].contains(['(', '[', ',', ';']) || bare.ends_with([')', ']', '%']);
+    Some((bare, repeats(&text[at..])?)).filter(|_| is_apart)
+}
+
+fn parts_of(cell: &str, decimal: char) -> Parts<'_> {
     let whole = printed(cell, decimal);
     let is_text = matches!(whole, Printed::Plain(Number::Text | Number::Broken, _));
-    let plain = Parts { printed: whole, number: Cow::Borrowed(cell), unit: None, percent_deviation: false };
+    let plain = Parts {
+        printed: whole,
+        number: Cow::Borrowed(cell),
+        unit: None,
+        percent_deviation: false,
+        repeats: None,
+    };
     let has_percent = cell.contains(['%', '％']);
     if !(is_text || has_percent) || cell.chars().nth(LONGEST).is_some() {
         return plain;
@@ -52,6 +77,7 @@ pub(super) fn parts(cell: &str, decimal: char) -> Parts<'_> {
         number: Cow::Owned(found.number),
         unit: found.unit,
         percent_deviation: found.percent_deviation,
+        repeats: None,
     }
 }
 
@@ -207,6 +233,10 @@ mod tests {
             ("0.081 mm (0.003)", 0.081, Some(0.003), unit("mm")),
             ("6.2 % (0.3 %)", 6.2, Some(0.3), unit("%")),
             ("0.081 foo/cm", 0.081, None, unit("foo/cm")),
+            ("0.081 ± 0.003 (n = 5)", 0.081, Some(0.003), None),
+            ("0.081 (0.003) [n=5]", 0.081, Some(0.003), None),
+            ("0.081 ± 0.003 mm, n = 5", 0.081, Some(0.003), unit("mm")),
+            ("0.081 [0.003]", 0.081, Some(0.003), None),
         ] {
             assert_eq!(plain(text, '.'), (value, sd, expected), "{text}");
         }

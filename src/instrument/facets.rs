@@ -307,8 +307,8 @@ fn is_deviation(word: &str, vocabulary: Vocabulary<'_>) -> bool {
 }
 
 /// The number of repeats in `n=5`.
-fn repeats(text: &str) -> Option<usize> {
-    let number = text.strip_prefix(['n', 'N'])?.trim_start().strip_prefix('=')?;
+pub(super) fn repeats(text: &str) -> Option<usize> {
+    let number = text.trim().strip_prefix(['n', 'N'])?.trim_start().strip_prefix('=')?;
     number.trim().parse().ok().filter(|n| *n > 0)
 }
 

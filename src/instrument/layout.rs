@@ -147,7 +147,7 @@ pub(super) fn blocks<'t>(
         }
     }
     if blocks.is_empty() {
-        return Err(unread.unwrap_or_else(|| context.error(0, 0, ReadProblem::Empty)));
+        return Err(unread.unwrap_or_else(|| not_read(rows, context)));
     }
     let has_table = blocks.iter().any(|block| matches!(block, Block::Table { .. }));
     scanner.findings.extend(Some(stray).filter(|_| has_table).and_then(|stray| shape::apart(stray, context)));
@@ -156,6 +156,29 @@ pub(super) fn blocks<'t>(
         scanner.findings.push(Finding::new(ReadFact::RowsNotRead { lines: behind }).at(place));
     }
     Ok((blocks, scanner.findings))
+}
+
+/// What is wrong with a file of which no row was taken: R006 where a row has a number, R002 where none has.
+fn not_read(rows: &[Row<'_>], context: &Context<'_>) -> ReadError {
+    let Some(at) = rows.iter().position(|row| has_value(row, context)) else {
+        return context.error(0, 0, ReadProblem::Empty);
+    };
+    let above = rows[..at].iter().rfind(|row| !row.is_blank()).unwrap_or(&rows[at]);
+    let words: Vec<String> = above.filled().map(|(_, c)| folded(&c.text).into_owned()).collect();
+    let found = format!(
+        "{:?} is over the numbers; a column of values is named by a symbol and its unit, B (gf·cm²/cm), beside a column of names or directions",
+        words.join(" | ")
+    );
+    context.error(above.line, above.column(0), ReadProblem::UnknownLayout { found })
+}
+
+/// Whether a cell is a number, or begins with one: `0.0812/0.0533`.
+fn has_value(row: &Row<'_>, context: &Context<'_>) -> bool {
+    row.filled().any(|(_, cell)| {
+        let begins =
+            cell.text.starts_with(|c: char| c.is_ascii_digit()) && cell.text.contains(context.decimal);
+        begins || shape::is_value(&cell.text, context)
+    })
 }
 
 fn unknown_layout(context: &Context<'_>, row: &Row<'_>, words: &[String]) -> ReadError {

@@ -35,7 +35,7 @@ use row_facts::{RowFacts, Title, no_direction};
 use super::context::Context;
 use super::dialect::{HeaderKey, Statistic, TableColumn};
 use super::error::{ReadError, ReadProblem};
-use super::facets::Facets;
+use super::facets::{Facets, repeats};
 use super::layout::Header;
 use super::raw::Row;
 use super::shape::{self, Region};
@@ -327,6 +327,10 @@ impl<'t> Table<'t, '_> {
                     }
                 }
                 Some(TableColumn::Direction) => {
+                    if self.layout.angles.contains(&label.index) {
+                        facts.facets.direction = self.direction_of_angle(row, label.index, text);
+                        continue;
+                    }
                     facts.facets.direction = self.direction(row, label.index, text, &f)?;
                     self.note_more_than_direction((row.line, row.column(label.index)), text);
                     facts.facets.index = facts.facets.index.or(f.index);
@@ -404,6 +408,15 @@ impl<'t> Table<'t, '_> {
     fn is_of_no_direction(&self, text: &str) -> bool {
         let of_all = self.context.vocabulary.statistic(text) == Some(Statistic::Mean);
         of_all || is_gap(text) || matches!(normalised(text).as_str(), "" | "all" | "none")
+    }
+
+    /// The number of repeats in a line above a table of means: `Mean values, n = 5`.
+    fn stated_repeats(&self) -> Option<usize> {
+        let lines = self.header.other.iter().map(|(name, value)| match value.contains('=') {
+            true => value.clone(),
+            false => format!("{name} = {value}"),
+        });
+        lines.into_iter().find_map(|line| line.split([',', ';', '(', ')']).find_map(repeats))
     }
 
     fn repeats(&self, row: &Row<'_>, index: usize, cell: &str) -> Result<usize, ReadError> {
@@ -495,7 +508,7 @@ impl<'t> Table<'t, '_> {
                 row_direction: facts.facets.direction,
                 mean: reading.mean * unit.factor,
                 sd: reading.sd.map(|s| s * unit.factor),
-                n: all.repeats.unwrap_or(facts.n),
+                n: reading.repeats.or(all.repeats).or(self.stated_repeats()).unwrap_or(facts.n),
                 status: all.status,
                 line: row.line,
                 column: row.column(column.index),

@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use super::cell::parts;
 use super::context::Context;
 use super::dialect::{Role, Statistic, TableColumn};
-use super::facets::Facets;
+use super::facets::{Facets, repeats};
 use super::letters;
 use super::lines;
-use super::raw::Row;
+use super::raw::{Cell, Row};
 pub(super) use super::section::section;
 use super::sniff::{Number, number};
 use super::unit_text::{split_unit, unbracketed, unit};
@@ -109,8 +109,11 @@ fn kind(row: &Row<'_>, context: &Context<'_>) -> Kind {
         return Kind::Other;
     }
     let (mut words, mut numbers, mut units, mut unknown, mut dashes) = (0, 0, 0, 0, 0);
-    let mut counting = true;
     let says = facets(row, context);
+    // `Mean values, n = 5` over a table.
+    if row.filled().any(|(_, cell)| repeats(&cell.text).is_some()) {
+        return Kind::Other;
+    }
     // `Specimen 2` alone is a title of rows, and heads no column.
     if row
         .filled()
@@ -124,7 +127,6 @@ fn kind(row: &Row<'_>, context: &Context<'_>) -> Kind {
             dashes += 1;
         } else if is_value(&cell.text, context) {
             numbers += 1;
-            counting &= cell.text.trim().parse() == Ok(numbers);
         } else if is_unit(&cell.text) && !f.is_clear() {
             units += 1;
         } else if f.unknown {
@@ -136,11 +138,21 @@ fn kind(row: &Row<'_>, context: &Context<'_>) -> Kind {
     match (words, numbers, units, unknown) {
         (0, 0, 1.., 0) => Kind::Units,
         // `1 2 3 AVE` over columns.
-        (1.., 2.., 0, _) if counting && dashes == 0 && words + unknown <= 6 => Kind::Head,
+        (1.., 2.., 0, _) if dashes == 0 && words + unknown <= 6 && counts(row, context) => Kind::Head,
         (_, 1.., ..) => Kind::Values,
         (1.., 0, ..) => Kind::Head,
         _ => Kind::Other,
     }
+}
+
+/// Whether the numbers of a row are 1, 2, 3, once or again and again: those of specimens below one direction after the other.
+fn counts(row: &Row<'_>, context: &Context<'_>) -> bool {
+    let cells = row.filled().filter(|(_, cell)| is_value(&cell.text, context));
+    let numbers: Vec<Option<usize>> = cells.map(|(_, cell)| cell.text.trim().parse().ok()).collect();
+    let again = numbers.iter().skip(1).position(|n| *n == Some(1)).map_or(numbers.len(), |at| at + 1);
+    again > 1
+        && numbers.len().is_multiple_of(again)
+        && numbers.iter().enumerate().all(|(i, n)| *n == Some(i % again + 1))
 }
 
 /// Whether a row of words is the heading of a result table by its symbols.
@@ -172,7 +184,9 @@ fn states_name(row: &Row<'_>, context: &Context<'_>) -> bool {
         (Some((name, value)), None) => key(name) && !value.trim().is_empty(),
         (_, Some((_, cell))) => {
             let f = context.facets(&cell.text);
-            key(first.text.trim_end_matches([':', '=', ' '])) && f.unit.is_none() && f.direction.is_none()
+            // `fabric,direction` heads two columns.
+            let is_name = f.unit.is_none() && f.direction.is_none() && f.meta != Some(TableColumn::Direction);
+            key(first.text.trim_end_matches([':', '=', ' '])) && is_name
         }
         _ => false,
     }
@@ -314,7 +328,14 @@ fn stands_over(row: &Row<'_>, next: Option<&Row<'_>>, context: &Context<'_>) -> 
         && row.filled().nth(1).is_some()
         && row.filled().all(|(_, c)| !is_value(&c.text, context))
         && facets(row, context).iter().all(|f| f.unknown || *f == Facets::default())
-        && next.is_some_and(|next| has_symbols(next, context))
+        && next.is_some_and(|next| has_symbols(next, context) || heads_statistics(next, context))
+}
+
+/// `Parameter, Direction, Mean, CV, Mean, CV`: statistics of several fabrics beside a column of parameters.
+fn heads_statistics(row: &Row<'_>, context: &Context<'_>) -> bool {
+    let says = facets(row, context);
+    let means = says.iter().filter(|f| f.statistic == Some(Statistic::Mean)).count();
+    means > 1 && says.iter().any(|f| f.meta == Some(TableColumn::Parameter))
 }
 
 /// Whether a row has one cell alone, and no number in it.
@@ -518,9 +539,20 @@ fn is_header_line(row: &Row<'_>, context: &Context<'_>) -> bool {
 
 /// Whether a row behind a blank one has values where the table has them.
 fn fits(row: &Row<'_>, region: &Region<'_>, context: &Context<'_>) -> bool {
-    let columns = |r: &Row<'_>| -> Vec<usize> {
-        r.filled().filter(|(_, c)| is_value(&c.text, context) || is_gap(&c.text)).map(|(i, _)| i).collect()
+    let Some(above) = region.rows.iter().rev().find(|r| r.filled().any(|(_, c)| may_hold(c, context))) else {
+        return false;
     };
-    let own = columns(row);
-    region.rows.iter().rev().find(|r| !columns(r).is_empty()).is_some_and(|r| columns(r) == own)
+    row.filled().any(|(_, c)| may_hold(c, context))
+        && holds(row, above, context)
+        && holds(above, row, context)
+}
+
+/// Whether a row has values, or dashes in their place, wherever another has values; a unit or a direction may be a dash too.
+fn holds(other: &Row<'_>, row: &Row<'_>, context: &Context<'_>) -> bool {
+    let mut values = other.filled().filter(|(_, c)| is_value(&c.text, context));
+    values.all(|(i, _)| row.cells.get(i).is_some_and(|c| may_hold(c, context)))
+}
+
+fn may_hold(cell: &Cell<'_>, context: &Context<'_>) -> bool {
+    is_value(&cell.text, context) || is_gap(&cell.text)
 }

@@ -2,6 +2,7 @@
 
 use super::cell;
 use super::error::ReadProblem;
+use super::facets::repeats;
 use super::raw;
 use super::words::folded;
 
@@ -182,6 +183,10 @@ fn of_words(cell: &str, delimiter: char, decimal: char) -> i64 {
             Number::Broken => -10,
             _ => 0,
         };
+    }
+    // `Mean values, n = 5`
+    if repeats(cell).is_some() {
+        return 0;
     }
     let other = [';', '=', ':', '\t']
         .into_iter()

@@ -14,6 +14,10 @@ pub(super) fn value(cell: &str, decimal: char) -> (Number, Option<f64>) {
     let text = text.trim_end_matches('%').trim_end();
     let parts = ["±", "+/-", "+-"].iter().find_map(|mark| text.split_once(mark));
     let parts = parts.or_else(|| text.strip_suffix(')').and_then(|t| t.split_once('(')));
+    // `[3]` is a reference.
+    let in_square =
+        || text.strip_suffix(']').and_then(|t| t.split_once('[')).filter(|(_, sd)| sd.contains(decimal));
+    let parts = parts.or_else(in_square);
     if let Some((mean, sd)) = parts {
         let sd = number(sd.trim().trim_end_matches('%'), decimal);
         if let (Number::Value(m), Number::Value(s)) = (number(mean.trim().trim_end_matches('%'), decimal), sd)

@@ -321,6 +321,11 @@ impl<'a> Vocabulary<'a> {
     }
 
     pub fn parameter(self, name: &str) -> Option<Parameter> {
+        // `X2HB` of R, whose names begin with a letter.
+        let name = name
+            .strip_prefix('X')
+            .filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+            .unwrap_or(name);
         Parameter::from_symbol(name).or_else(|| {
             self.exact(&normalised(name), |d| &d.symbols, |k| Parameter::from_symbol(k), &index().symbols)
         })

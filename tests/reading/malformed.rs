@@ -79,6 +79,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("R145", "r145-lacking.csv", "r145-lacking.csv:33:9"),
     ("R146", "r146-brackets.csv", "r146-brackets.csv:4:18"),
     ("R148", "r148_warp_FB2_1.csv", "r148_warp_FB2_1.csv:33"),
+    ("R150", "r150-angles.csv", "r150-angles.csv:2:4"),
     ("R149", "r149-branches", "r149-branches:2"),
     ("R147", "r147-significance.csv", "r147-significance.csv:2:3"),
     ("R141", "r141-no-origin", "r141-no-origin/fabric.toml"),

@@ -298,3 +298,63 @@ fn every_fabric_without_a_direction_is_told() {
     let found = read("Fabric,B warp,B\nF1,0.08,0.05\nF2,0.12,0.1\n");
     assert_eq!(told(&found, "R136").len(), 2, "{:?}", found.findings);
 }
+
+/// Layouts that were refused, each with the values that stand in it.
+#[test]
+fn layouts_of_reports() {
+    let b = |direction, value| ("F1".to_string(), Parameter::B, direction, value);
+    let both = [b(WARP, 0.0812), b(WEFT, 0.0533)];
+    for text in [
+        "Fabric,Direction,B\nF1,0,0.0812\nF1,90,0.0533\n",
+        "Fabric,Direction,B\nF1,0°,0.0812\nF1,90°,0.0533\n",
+        "Fabric,Warp/Weft,B\nF1,Warp,0.0812\nF1,Weft,0.0533\n",
+        "fabric,direction,rep,variable,value\nF1,warp,1,B,0.0812\nF1,weft,1,B,0.0533\n",
+        ",,B (gf·cm²/cm),B (gf·cm²/cm)\n,,mean,std\nfabric,direction,,\nF1,warp,0.0812,0.004\n,weft,0.0533,0.003\n",
+    ] {
+        assert_eq!(values(&read(text)), both, "{text}");
+    }
+    for text in [
+        "Mean values, n = 5\nFabric,B warp (gf·cm²/cm),B weft (gf·cm²/cm)\nF1,0.0812,0.0533\n",
+        "Fabric,Direction,B\nF1,warp,0.0812 ± 0.0041 (n = 5)\nF1,weft,0.0533 ± 0.003 (n = 5)\n",
+        "Fabric,Direction,B\nF1,warp,\"0.0812 ± 0.0041, n=5\"\nF1,weft,0.0533 (0.003) [n = 5]\n",
+    ] {
+        let found = read(text);
+        assert_eq!(values(&found), both, "{text}");
+        assert!(found.results.iter().all(|(_, v)| v.n == 5), "{text}");
+    }
+    // Units between two rows of heads, once over what their parameter stands over.
+    let units =
+        read("Fabric,B,,2HB,\n,gf·cm²/cm,,gf·cm/cm,\n,warp,weft,warp,weft\nF1,0.0812,0.0533,0.04,0.03\n");
+    assert_eq!(values(&units)[..2], both);
+    // Specimens below each direction, beside a column of units.
+    let repeats =
+        read(",,Warp,,,Weft,,\nParameter,Unit,1,2,3,1,2,3\nB,gf·cm²/cm,0.08,0.081,0.082,0.052,0.053,0.054\n");
+    let found: Vec<_> = values(&repeats).into_iter().map(|(.., direction, mean)| (direction, mean)).collect();
+    assert_eq!(found, [(WARP, 0.081), (WEFT, 0.053)]);
+    assert!(repeats.results.iter().all(|(_, v)| v.n == 3));
+    // A mean and another statistic of each fabric.
+    let means =
+        read(",,F1,,F2,\nParameter,Direction,Mean,CV [%],Mean,CV [%]\nB,warp,0.0812,5.1,0.1234,4.2\n");
+    assert_eq!(values(&means), [b(WARP, 0.0812), ("F2".into(), Parameter::B, WARP, 0.1234)]);
+    // The title of a group of parameters, and dashes where there is no unit and no direction.
+    let groups = "Property,Symbol,Unit,Direction,F1,F2\nBending,B,gf·cm²/cm,Warp,0.0812,0.1234\nSurface,,,,,\n\
+                  Linearity,LC,-,-,0.341,0.287\n";
+    assert!(values(&read(groups)).contains(&("F2".into(), Parameter::Lc, None, 0.287)), "{groups}");
+    // `X2HB` of R.
+    let of_r = read("fabric,direction,B,X2HB\nF1,warp,0.0812,0.04\n");
+    assert_eq!(values(&of_r).last().map(|v| (v.1, v.3)), Some((Parameter::Hb, 0.04)));
+    // A reference in brackets is no deviation.
+    assert!(read("Fabric,Direction,B,G\nF1,warp,0.0812 [0.004],0.5\n").results[0].1.sd.is_some());
+    // Angles of one kind only are none.
+    assert_eq!(attempt("Fabric,Direction,B\nF1,0,0.0812\nF2,0,0.0533\n").unwrap_err().code(), "R018");
+}
+
+/// Numbers under words that head nothing are told with what is missing, and a file without numbers as empty.
+#[test]
+fn numbers_that_nothing_heads_are_no_empty_file() {
+    let read = |text: &str| parse(Path::new("t.csv"), text.as_bytes(), &ReadSettings::default());
+    let error = read("Fabric,B warp\nF1,0.08\n").unwrap_err();
+    assert_eq!((error.code(), error.place().line), ("R006", 1));
+    assert!(error.to_string().contains("\"Fabric | B warp\" is over the numbers"), "{error}");
+    assert_eq!(read("Fabric,Remark\nF1,none\n").unwrap_err().code(), "R002");
+}

@@ -305,6 +305,9 @@ super::facts! {
             /// The record that they make.
             record: RecordName,
         } = "{:?} and {:?} are read as loading and unloading of one specimen: give them other names if they are two", parts[0], parts[1];
+        /// Angles in a column of directions.
+        "R150" AnglesAsDirections {} =
+            "the angles in the column of directions are taken as those to the warp: 0 is warp, 90 is weft, 45 is bias";
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

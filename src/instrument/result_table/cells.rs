@@ -18,6 +18,8 @@ pub(super) struct Reading {
     pub unit: Option<String>,
     /// Whether the deviation alone has the sign of per cent behind it.
     percent_deviation: bool,
+    /// How many repeats it is of, as the cell itself says.
+    pub repeats: Option<usize>,
 }
 
 impl Reading {
@@ -41,8 +43,8 @@ impl Table<'_, '_> {
         let parts = parts(cell, self.context.decimal);
         let problem = match parts.printed {
             Printed::Plain(Number::Value(mean), sd) | Printed::Marked(mean, sd) => {
-                let (unit, percent_deviation) = (parts.unit, parts.percent_deviation);
-                return Ok(Reading { mean, sd, unit, percent_deviation });
+                let (unit, percent_deviation, repeats) = (parts.unit, parts.percent_deviation, parts.repeats);
+                return Ok(Reading { mean, sd, unit, percent_deviation, repeats });
             }
             Printed::Plain(Number::NotFinite, _) => ReadProblem::NotFinite { found: cell.to_string() },
             _ => ReadProblem::NotANumber { found: cell.to_string(), decimal: self.context.decimal },

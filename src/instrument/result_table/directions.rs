@@ -12,7 +12,7 @@ use crate::instrument::curves::across_in_name;
 use crate::instrument::dialect::{HeaderKey, TableColumn};
 use crate::instrument::error::ReadError;
 use crate::instrument::raw::Row;
-use crate::instrument::shape;
+use crate::instrument::shape::{self, Region};
 use crate::instrument::vocabulary::Vocabulary;
 use crate::instrument::words::normalised;
 use crate::instrument::{Direction, Parameter};
@@ -218,6 +218,20 @@ impl Table<'_, '_> {
         }
     }
 
+    /// The direction of an angle in a column of angles; R150, once.
+    pub(super) fn direction_of_angle(
+        &mut self,
+        row: &Row<'_>,
+        index: usize,
+        text: &str,
+    ) -> Option<Direction> {
+        if self.directions.insert("angles".to_string()) {
+            let place = Place::at(self.context.path, row.line, row.column(index));
+            self.findings.push(Finding::new(ReadFact::AnglesAsDirections {}).at(place));
+        }
+        direction_of_angle(text)
+    }
+
     /// What a line above the table says that the numbers 1 and 2 are.
     fn key_of_numbers(&self) -> Option<[Direction; 2]> {
         let other = self.header.other.iter().map(|(name, value)| format!("{name} = {value}"));
@@ -272,7 +286,29 @@ impl Table<'_, '_> {
     }
 }
 
+/// The direction of an angle to the warp, `0`, `45` and `90` with or without a sign for degrees.
+fn direction_of_angle(text: &str) -> Option<Direction> {
+    let degrees = text.trim_end_matches(['°', ' ']).trim_end_matches("deg").trim_end();
+    match degrees.parse::<f64>().ok()? {
+        0.0 => Some(Direction::Warp),
+        45.0 => Some(Direction::Bias),
+        90.0 => Some(Direction::Weft),
+        _ => None,
+    }
+}
+
 impl Layout {
+    /// Columns of directions whose cells are 0 and 90, and perhaps 45.
+    pub(super) fn columns_of_angles(&self, region: &Region<'_>) -> BTreeSet<usize> {
+        let named = self.labels.iter().filter(|label| label.meta == Some(TableColumn::Direction));
+        let holds_angles = |index: &usize| {
+            let cells = region.rows.iter().filter_map(|row| row.get(*index));
+            let found: Option<BTreeSet<Direction>> = cells.map(direction_of_angle).collect();
+            found.is_some_and(|of| of.contains(&Direction::Warp) && of.contains(&Direction::Weft))
+        };
+        named.map(|label| label.index).filter(holds_angles).collect()
+    }
+
     /// `Warp yarn` and `Filling direction` over columns: names that are directions, each of another.
     pub(super) fn directions_over_columns(&mut self, v: Vocabulary<'_>) {
         let direction_of = |c: &Column| c.facets.direction.or_else(|| v.direction(c.fabric.as_deref()?));

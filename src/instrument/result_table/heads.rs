@@ -32,12 +32,18 @@ impl Heads {
         let (mut units, mut letter_texts) = (None, Vec::new());
         let mut rows = Vec::new();
         let words: Vec<&&Row<'_>> = region.heads.iter().filter(|h| !is_units(h)).collect();
+        let lowest = words.last().map_or(0, |row| row.line);
         for head in region.heads.iter().filter(|h| is_units(h)) {
-            let bare = |i| {
-                let text = head.get(i).map(unbracketed).unwrap_or_default();
-                (text, (head.line, head.column(i)))
-            };
-            units = Some((0..width).map(bare).collect());
+            let mut spread: Vec<(String, (usize, usize))> = Vec::with_capacity(width);
+            let above = region.heads.iter().rev().find(|row| row.line < head.line);
+            for i in 0..width {
+                // Between rows of words it stands once over what its parameter stands over.
+                let is_merged = head.line < lowest && above.is_some_and(|row| row.get(i).is_none());
+                let before = spread.last().filter(|_| is_merged && head.get(i).is_none()).cloned();
+                let own = head.get(i).map(unbracketed).unwrap_or_default();
+                spread.push(before.unwrap_or((own, (head.line, head.column(i)))));
+            }
+            units = Some(spread);
         }
         for (k, head) in words.iter().enumerate() {
             let lowest = k + 1 == words.len();

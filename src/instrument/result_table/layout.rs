@@ -66,6 +66,8 @@ pub(super) struct Layout {
     pub left_out_rows: BTreeMap<usize, String>,
     /// Numbers behind symbols, in heads or in labels of rows.
     numbers: BTreeSet<usize>,
+    /// Columns of directions that hold angles to the warp.
+    pub angles: BTreeSet<usize>,
     /// Heads that were read as directions although they say more.
     pub texts_of_directions: Vec<String>,
     /// Columns of numbers whose heads are not understood.
@@ -95,6 +97,7 @@ impl Layout {
             line: region.heads.last().or(region.rows.first()).map_or(0, |r| r.line),
             left_out_rows: BTreeMap::new(),
             numbers: BTreeSet::new(),
+            angles: BTreeSet::new(),
             texts_of_directions: Vec::new(),
             strangers: Vec::new(),
             counted_by: None,
@@ -111,6 +114,7 @@ impl Layout {
         for index in 0..width {
             layout.add(index, &heads, region, &labels, context);
         }
+        layout.angles = layout.columns_of_angles(region);
         layout.deviations_beside_values(region, context);
         layout.settle(&heads, region, context);
         let indices = layout.values.iter().map(|c| c.index).chain(layout.sd_column);
