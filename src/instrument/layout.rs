@@ -119,7 +119,12 @@ pub(super) fn blocks<'t>(
             scanner.lists.clear();
             scanner.labels.clear();
             scanner.above = None;
+            let title = region.title.filter(|row| row.filled().nth(1).is_some());
             blocks.push(Block::Table { header: scanner.header.clone(), region });
+            // `Direction,warp` above results of the record that follows holds for that as well.
+            if let Some(row) = title {
+                scanner.header_line(row);
+            }
         } else if scanner.labels(row) {
             scanner.at += 1;
         } else if let Some(columns) = scanner.columns_above() {
