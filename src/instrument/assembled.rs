@@ -35,8 +35,8 @@ pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileConte
     if contents.is_empty() && group.named {
         return Vec::new(); // the files failed, and the failures say so
     }
-    let names: BTreeSet<&String> =
-        contents.iter().flat_map(|c| c.results.iter().filter_map(|(name, _)| name.as_ref())).collect();
+    let of_tables = contents.iter().flat_map(|c| c.results.iter().filter_map(|(name, _)| name.as_ref()));
+    let names: BTreeSet<&String> = of_tables.chain(contents.iter().flat_map(named_by_rows)).collect();
     let sample = contents.iter().flat_map(|c| &c.measurements).find_map(|m| m.sample.clone());
     let of_fab = contents.iter().find_map(|c| c.fab.as_ref()?.name.clone());
     // One that is left out makes a table of several as well.
@@ -57,8 +57,13 @@ pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileConte
             by_fabric.entry(named(fabric)).or_default().push(value);
         }
         let stiffnesses: Vec<_> = content.stiffnesses.into_iter().map(|(f, s)| (named(f), s)).collect();
-        if !content.measurements.is_empty() || content.fab.is_some() {
-            by_fabric.entry(name.clone()).or_default();
+        let mut curves: BTreeMap<String, Vec<Measurement>> = BTreeMap::new();
+        for measurement in content.measurements {
+            let of_row = measurement.sample.clone().filter(|_| content.rows_name_fabrics && several);
+            curves.entry(of_row.unwrap_or_else(|| name.clone())).or_default().push(measurement);
+        }
+        for fabric in curves.keys().chain(content.fab.as_ref().map(|_| &name)) {
+            by_fabric.entry(fabric.clone()).or_default();
         }
         let decisions = content.inference;
         let mut inference = Some(Inference { path: content.source.path.clone(), decisions });
@@ -77,8 +82,12 @@ pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileConte
         if let Some(input) = first.and_then(|name| out.get_mut(&name)) {
             input.findings.extend(findings);
         }
+        for (fabric, measurements) in curves {
+            if let Some(input) = out.get_mut(&fabric) {
+                input.measurements.extend(measurements);
+            }
+        }
         if let Some(input) = out.get_mut(&name) {
-            input.measurements.extend(content.measurements);
             input.fab.extend(content.fab);
         }
     }
@@ -93,6 +102,12 @@ pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileConte
         finished(fabric, vocabulary)
     };
     out.into_values().enumerate().map(once).collect()
+}
+
+/// The fabrics that rows of curves name.
+fn named_by_rows(content: &FileContent) -> impl Iterator<Item = &String> {
+    let named = content.measurements.iter().filter(|_| content.rows_name_fabrics);
+    named.filter_map(|measurement| measurement.sample.as_ref())
 }
 
 /// Findings by the fabric in whose cell they were made, and those of no cell.

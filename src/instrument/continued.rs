@@ -59,7 +59,7 @@ impl<'t> Scanner<'t, '_> {
     /// Adds a block, or its rows to the record above that it is a part of.
     pub(super) fn add(&mut self, blocks: &mut Vec<Block<'t>>, block: Block<'t>, part: Option<Part>) {
         match (blocks.last_mut(), block) {
-            (Some(Block::Curves { pairs, rows }), Block::Curves { pairs: next, rows: more })
+            (Some(Block::Curves { pairs, rows, .. }), Block::Curves { pairs: next, rows: more, .. })
                 if part.is_some() && are_of_one_record(pairs, &next) =>
             {
                 let turned = part == Some(Part::Unloading) && self.is_turned(&pairs[0].x, rows, &more);

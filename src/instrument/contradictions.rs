@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::dialect::{HeaderKey, Role};
 use super::factor;
+use super::keyed_rows::KeyColumn;
 use super::layout::{Column, Entry, Pair, Scanner};
 use super::raw::Row;
 use super::sniff::{Number, number};
@@ -125,12 +126,19 @@ impl Scanner<'_, '_> {
     }
 
     /// R104: columns of numbers beside those of curves, whose headings are not understood.
-    pub(super) fn note_strange_columns(&mut self, heading: &Row<'_>, columns: &[Column], rows: &[&Row<'_>]) {
+    pub(super) fn note_strange_columns(
+        &mut self,
+        heading: &Row<'_>,
+        columns: &[Column],
+        keys: &[KeyColumn],
+        rows: &[&Row<'_>],
+    ) {
         let decimal = self.context.decimal;
         let names: Vec<String> = heading
             .filled()
             .filter(|(i, c)| {
                 columns.iter().all(|column| column.index != *i)
+                    && keys.iter().all(|column| column.index != *i)
                     && number(&c.text, decimal) == Number::Text
                     && is_measured(rows, *i, decimal)
             })

@@ -11,6 +11,7 @@ use super::column_name::ColumnName;
 use super::context::Context;
 use super::dialect::{HeaderKey, Role};
 use super::error::{ReadError, ReadProblem};
+use super::keyed_rows::{self, KeyColumn};
 use super::label::Label;
 use super::pairs;
 use super::raw::Row;
@@ -73,7 +74,7 @@ pub(super) enum Part {
 
 /// A part of the file that holds values.
 pub(super) enum Block<'t> {
-    Curves { pairs: Vec<Pair>, rows: Vec<&'t Row<'t>> },
+    Curves { pairs: Vec<Pair>, rows: Vec<&'t Row<'t>>, keys: Vec<KeyColumn> },
     Table { header: Header, region: Region<'t> },
 }
 
@@ -296,14 +297,15 @@ impl<'t> Scanner<'t, '_> {
         }
         self.direction_above();
         self.check_width(heading, &rows)?;
-        self.note_strange_columns(heading, &columns, &rows);
+        let keys = keyed_rows::columns(heading, &columns, &rows, self.context);
+        self.note_strange_columns(heading, &columns, &keys, &rows);
         (self.above, self.tells_another) = (Some(columns.clone()), false);
         let mut pairs = self.pairs(columns, &rows)?;
         self.distribute(&mut pairs)?;
         self.leave_out_statistics(&mut pairs);
         self.note_words(&pairs);
         self.header.caption = None;
-        Ok((Block::Curves { pairs, rows }, part))
+        Ok((Block::Curves { pairs, rows, keys }, part))
     }
 
     /// A row of units below headings that have none.

@@ -36,6 +36,7 @@ mod file_name;
 mod folder;
 mod header_value;
 mod inference;
+mod keyed_rows;
 mod label;
 mod layout;
 mod letters;

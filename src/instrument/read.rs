@@ -15,6 +15,7 @@ use super::dialect::{Dialect, HeaderKey};
 use super::error::{ReadError, ReadProblem};
 use super::fab::{self, FabFile};
 use super::header_value;
+use super::keyed_rows;
 use super::label::Label;
 use super::layout::{self, Block, Header};
 use super::raw::{self, Row};
@@ -54,6 +55,8 @@ pub struct FileContent {
     pub results: Values,
     /// Tensile stiffnesses of result tables, each with the fabric that the table names.
     pub stiffnesses: Vec<(Option<String>, StatedStiffness)>,
+    /// Whether the curves stand below one another in rows that name their fabrics: [`Measurement::sample`] is one then.
+    pub rows_name_fabrics: bool,
     /// A FAB record.
     pub fab: Option<FabFile>,
     /// What a reader of the data must know.
@@ -346,6 +349,7 @@ fn archive(
                 content.measurements.extend(file.measurements);
                 content.results.extend(file.results);
                 content.findings.extend(file.findings);
+                content.rows_name_fabrics |= file.rows_name_fabrics;
                 content.failures.extend(file.failures);
                 content.fab = content.fab.take().or(file.fab);
             }
@@ -388,26 +392,12 @@ fn table(
     for (i, block) in blocks.into_iter().enumerate() {
         let ends_file = !complete && i + 1 == count;
         match block {
-            Block::Curves { pairs, rows } => {
-                let before = content.measurements.len();
-                for pair in &pairs {
-                    let read = curves::measurement(pair, &rows, ends_file, context, &mut content.inference)?;
-                    if let Some((measurement, findings)) = read {
-                        content.measurements.push(measurement);
-                        // What was assumed for one column was assumed for all: that is said once.
-                        for finding in findings {
-                            let assumed =
-                                matches!(finding.fact, Fact::Reading(ReadFact::AssumedDimension { .. }));
-                            if !(assumed && content.findings.iter().any(|k| k.fact == finding.fact)) {
-                                content.findings.push(finding);
-                            }
-                        }
-                    }
-                    weight(&pair.header, context, content)?;
-                }
-                if content.measurements.len() == before {
-                    let (line, column) = pairs.first().map_or((0, 0), |p| (p.x.line, p.x.column));
-                    return Err(context.error(line, column, ReadProblem::Empty));
+            Block::Curves { pairs, rows, keys } => {
+                content.rows_name_fabrics |= keyed_rows::name_fabrics(&keys);
+                let records = keyed_rows::records(pairs, rows, &keys);
+                let last = records.len() - 1;
+                for (k, (pairs, rows)) in records.into_iter().enumerate() {
+                    curves_of(&pairs, &rows, ends_file && k == last, context, content)?;
                 }
             }
             Block::Table { header, region } => {
@@ -427,6 +417,36 @@ fn table(
     content.inference.retain(|line| seen.insert(line.clone()));
     content.findings.dedup();
     Ok(unread)
+}
+
+/// Reads the curves of a block into `content`.
+fn curves_of(
+    pairs: &[layout::Pair],
+    rows: &[&Row<'_>],
+    ends_file: bool,
+    context: &Context<'_>,
+    content: &mut FileContent,
+) -> Result<(), ReadError> {
+    let before = content.measurements.len();
+    for pair in pairs {
+        let read = curves::measurement(pair, rows, ends_file, context, &mut content.inference)?;
+        if let Some((measurement, findings)) = read {
+            content.measurements.push(measurement);
+            // What was assumed for one column was assumed for all: that is said once.
+            for finding in findings {
+                let assumed = matches!(finding.fact, Fact::Reading(ReadFact::AssumedDimension { .. }));
+                if !(assumed && content.findings.iter().any(|k| k.fact == finding.fact)) {
+                    content.findings.push(finding);
+                }
+            }
+        }
+        weight(&pair.header, context, content)?;
+    }
+    if content.measurements.len() == before {
+        let (line, column) = pairs.first().map_or((0, 0), |p| (p.x.line, p.x.column));
+        return Err(context.error(line, column, ReadProblem::Empty));
+    }
+    Ok(())
 }
 
 /// An areal density in the header of a curve file is a result value of its own.

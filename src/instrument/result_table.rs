@@ -376,6 +376,11 @@ impl<'t> Table<'t, '_> {
                 facts.parameter_at = Some(label.index);
             }
         }
+        for label in &self.layout.strange_labels {
+            if let Some(text) = row.get(label.index) {
+                self.states.entry(row.line).or_default().insert(label.index, text.to_string());
+            }
+        }
         let of_header = self.header.known.get(&HeaderKey::Sample).map(|e| folded(&e.text).into_owned());
         let named = id.or(fabric);
         facts.names_fabric = named.is_some();

@@ -288,6 +288,10 @@ impl<'a> Vocabulary<'a> {
         if !label.chars().any(|c| c.is_alphabetic() || c == '±') {
             return None;
         }
+        // Compared words lose their accents, and the sign of the mean its bar.
+        if ["x\u{304}", "X\u{304}", "x\u{305}", "X\u{305}"].contains(&label.trim()) {
+            return Some(Statistic::Mean);
+        }
         self.find(label, false, |d| &d.statistics, &index().statistics)
     }
 

@@ -247,3 +247,43 @@ fn branches_beside_each_other_have_their_words_above_the_headings() {
         assert!(told(&content, "R119").is_empty());
     }
 }
+
+/// Records below one another in columns of keys, as R and Python write them: each direction and specimen is one, and each fabric its own.
+#[test]
+fn records_in_rows_that_name_them() {
+    let record = |keys: &str, scale: f64| -> String {
+        let sample = |i: usize| 2.5 * (1.0 - (i as f64 / 20.0 - 1.0).abs());
+        (0..41).map(|i| format!("{keys},{:.4},{:.5}\n", sample(i), scale * sample(i))).collect()
+    };
+    let head = "fabric,direction,specimen,curvature (1/cm),moment (gf·cm/cm)\n";
+    let one: String = [("F1,warp,1", 0.08), ("F1,warp,2", 0.09), ("F1,weft,1", 0.05)]
+        .map(|(keys, scale)| record(keys, scale))
+        .concat();
+    let found = read(&format!("{head}{one}"));
+    let names: Vec<_> = found
+        .measurements
+        .iter()
+        .map(|m| (m.sample.as_deref(), m.direction, m.specimen, m.curve.len()))
+        .collect();
+    let (warp, weft) = (Some(Direction::Warp), Some(Direction::Weft));
+    assert_eq!(names, [(Some("F1"), warp, 1, 41), (Some("F1"), warp, 2, 41), (Some("F1"), weft, 1, 41)]);
+    assert_eq!(found.measurements[2].lines[0], 3 + 82);
+    assert!(told(&found, "R104").is_empty() && told(&found, "R115").is_empty(), "{:?}", found.findings);
+    // The order of the rows is that within each record.
+    let mut mixed: Vec<&str> = one.lines().collect();
+    mixed.sort_by_key(|row| row.split(',').nth(2) == Some("2"));
+    let mixed = read(&format!("{head}{}\n", mixed.join("\n")));
+    assert_eq!(mixed.measurements.iter().map(|m| m.curve.clone()).collect::<Vec<_>>().len(), 3);
+    // A column that counts samples is no key, and one that is the same everywhere is.
+    let counted: String =
+        record("", 0.08).lines().enumerate().map(|(i, row)| format!("warp,{}{row}\n", i + 1)).collect();
+    let counted = read(&format!("direction,no,curvature (1/cm),moment (gf·cm/cm)\n{counted}"));
+    assert_eq!((counted.measurements.len(), counted.measurements[0].direction), (1, warp));
+    // Fabrics are read as such, without a folder for each.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("shelf.csv");
+    std::fs::write(&path, format!("{head}{one}{}", record("F2,warp,1", 0.2))).unwrap();
+    let library = kesf::instrument::read_fabrics(&[path], &ReadSettings::default(), &|_| {});
+    let fabrics: Vec<_> = library.fabrics.iter().map(|f| (f.name.as_str(), f.measurements.len())).collect();
+    assert_eq!(fabrics, [("F1", 3), ("F2", 1)], "{:?}", library.failures);
+}

@@ -358,3 +358,17 @@ fn numbers_that_nothing_heads_are_no_empty_file() {
     assert!(error.to_string().contains("\"Fabric | B warp\" is over the numbers"), "{error}");
     assert_eq!(read("Fabric,Remark\nF1,none\n").unwrap_err().code(), "R002");
 }
+
+/// What tells rows apart may be numbers in a column between those of names and values; the sign of a mean has its meaning.
+#[test]
+fn numbers_may_be_states_and_signs_means() {
+    let long = "fabric,washes,direction,variable,value,unit\nF1,0,warp,B,0.0812,gf·cm²/cm\nF1,5,warp,B,0.065,gf·cm²/cm\n";
+    assert!(told(&read(long), "R126")[0].contains("\"washes\""), "{long}");
+    let signs = read(",B warp,B weft\nx\u{304},0.0812,0.0533\ns,0.016,0.0107\n");
+    let found: Vec<_> = values(&signs).into_iter().map(|(.., direction, mean)| (direction, mean)).collect();
+    assert_eq!(found, [(WARP, 0.0812), (WEFT, 0.0533)]);
+    let limits = read(
+        "Fabric,Direction,Statistic,B\nF1,warp,Mean,0.0812\nF1,warp,lower.CL,0.07\nF1,warp,upper.CL,0.09\n",
+    );
+    assert_eq!(values(&limits), [("F1".into(), Parameter::B, WARP, 0.0812)]);
+}

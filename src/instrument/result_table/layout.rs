@@ -72,6 +72,8 @@ pub(super) struct Layout {
     pub texts_of_directions: Vec<String>,
     /// Columns of numbers whose heads are not understood.
     pub strangers: Vec<String>,
+    /// Those of them that may tell rows apart, where rows are parameters.
+    pub strange_labels: Vec<LabelColumn>,
     /// The head over numbers of specimens, where it is not understood.
     pub counted_by: Option<String>,
     /// The head over numbers of specimens or samples, which it does not say.
@@ -100,6 +102,7 @@ impl Layout {
             angles: BTreeSet::new(),
             texts_of_directions: Vec::new(),
             strangers: Vec::new(),
+            strange_labels: Vec::new(),
             counted_by: None,
             numbered_by: None,
             letters: heads.letters.clone(),

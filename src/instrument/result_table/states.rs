@@ -30,7 +30,8 @@ impl Table<'_, '_> {
     /// Adds the columns in which the repeats of a value differ.
     pub(super) fn states_of(&self, fabric: &Option<String>, kept: &[Datum], states: &mut States) {
         let [first, _, ..] = kept else { return };
-        for label in self.layout.labels.iter().filter(|l| l.meta.is_none()) {
+        let labels = self.layout.labels.iter().filter(|l| l.meta.is_none());
+        for label in labels.chain(&self.layout.strange_labels) {
             if self.context.vocabulary.key(&label.name) == Some(HeaderKey::Circumstance) {
                 continue;
             }

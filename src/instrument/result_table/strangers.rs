@@ -1,6 +1,6 @@
 //! Columns of numbers whose heads are not understood: they are told, and are no fabrics and no specimens.
 
-use super::layout::{Column, Layout};
+use super::layout::{Column, LabelColumn, Layout};
 use super::{Datum, Table};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::instrument::context::Context;
@@ -74,6 +74,9 @@ impl Layout {
     }
 
     fn tell_strangers(&mut self, columns: Vec<Column>) {
+        let named = columns.iter().filter(|c| !c.name.is_empty());
+        let labels = named.map(|c| LabelColumn { index: c.index, meta: None, name: c.name.clone() });
+        self.strange_labels.extend(labels);
         self.strangers.extend(columns.into_iter().map(|c| match c.name.is_empty() {
             true => format!("column {} without a heading", c.index + 1),
             false => c.name,
