@@ -43,6 +43,12 @@ pub(crate) fn in_words(error: &toml::de::Error) -> String {
     if let Some(at) = message.find("expected struct ") {
         message.replace_range(at.., "expected a table");
     }
+    if message.ends_with("expected an array") {
+        message.push_str(match message.contains("invalid type: table") {
+            true => ": what may come several times has double brackets, [[name]]",
+            false => ": write it between brackets, [1, 2]",
+        });
+    }
     message
 }
 
@@ -100,7 +106,14 @@ mod tests {
                 "invalid value: whole number `300`, expected a whole number from 0 to 255",
             ),
             ("width = 1\nlarge_rotations = 1", "invalid type: whole number `1`, expected true or false"),
-            ("width = 1\nlayers = 3", "invalid type: whole number `3`, expected an array"),
+            (
+                "width = 1\nlayers = 3",
+                "invalid type: whole number `3`, expected an array: write it between brackets, [1, 2]",
+            ),
+            (
+                "width = 1\n[layers]\nof = 1",
+                "invalid type: table, expected an array: what may come several times has double brackets, [[name]]",
+            ),
             ("width = 1\ninner = 3", "invalid type: whole number `3`, expected a table"),
             ("cells = [1, 2]", "missing key `width`"),
         ] {

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use super::dialect::HeaderKey;
 use super::means;
-use super::read::{FileContent, ReadSettings};
+use super::read::{FileContent, ReadSettings, parse};
 use super::samples;
 use super::states::told_apart;
 use super::vocabulary::Vocabulary;
-use super::{FabricInfo, FabricInput, Inference, Measurement, Parameter, ResultValue};
+use super::{FabricInfo, FabricInput, Inference, Measurement, Parameter, ReadError, ResultValue};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::kes::Key;
 
@@ -43,7 +43,11 @@ pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileConte
     let left_out = contents.iter().flat_map(|c| c.failures.iter().filter_map(|e| e.about.fabric.as_ref()));
     let several = names.iter().copied().chain(left_out).collect::<BTreeSet<_>>().len() > 1;
     let only = if names.len() == 1 { names.first().map(|n| (*n).clone()) } else { None };
-    let stem = || group.path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    // `<stdin>` stands for a path.
+    let stem = || {
+        let stem = group.path.file_stem().unwrap_or_default().to_string_lossy();
+        stem.trim_matches(['<', '>']).to_string()
+    };
     let name = group.name.clone().or(sample).or(only).or(of_fab).unwrap_or_else(stem);
     let mut out: BTreeMap<String, FabricInput> = BTreeMap::new();
     if !several {
@@ -102,6 +106,23 @@ pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileConte
         finished(fabric, vocabulary)
     };
     out.into_values().enumerate().map(once).collect()
+}
+
+/// The fabrics of a file that is in memory, as [`read_fabrics`](super::read_fabrics) reads one on disk, and an error for each that a table
+/// in it could not give. `path` serves for its name and for messages.
+///
+/// # Errors
+/// See [`ReadProblem`](super::ReadProblem).
+pub fn parse_fabrics(
+    path: &Path,
+    bytes: &[u8],
+    settings: &ReadSettings,
+) -> Result<(Vec<FabricInput>, Vec<ReadError>), ReadError> {
+    let content = parse(path, bytes, settings)?;
+    let failures = content.failures.clone();
+    let group = Group { path: path.to_path_buf(), name: None, files: Vec::new(), named: true };
+    let about = AboutGroup { info: FabricInfo::default(), settings: settings.clone(), findings: Vec::new() };
+    Ok((fabrics(&group, &about, vec![content]), failures))
 }
 
 /// The fabrics that rows of curves name.

@@ -78,6 +78,7 @@ mod words;
 mod workbook;
 
 pub use crate::kes::{Direction, Parameter, Shape, Test};
+pub use assembled::parse_fabrics;
 pub use conditions::{StatedConditions, TestConditions, standard_conditions};
 pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, HeaderKey, Role, Statistic, TableColumn, dialects};
 pub use error::{About, ReadError, ReadProblem};

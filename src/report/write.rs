@@ -101,7 +101,16 @@ pub(super) fn temporary(path: &Path) -> Result<NamedTempFile, OutputError> {
     // A temporary file is private by default; a result is as readable as any new file (less the umask).
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder).map_err(|source| OutputError::Write { path: path.to_path_buf(), source })
+    builder
+        .tempfile_in(folder)
+        .map_err(|e| OutputError::Write { path: path.to_path_buf(), source: without_temporary_name(e) })
+}
+
+/// What the system said, without the name that nobody gave.
+fn without_temporary_name(error: io::Error) -> io::Error {
+    // The cause is in no field of what `tempfile` returns.
+    let text = error.to_string();
+    io::Error::new(error.kind(), text.split(" at path ").next().unwrap_or_default())
 }
 
 /// Lets the system put a temporary file on the disk and gives it its name.

@@ -110,8 +110,10 @@ impl Catalogue {
         }
         for (at, input) in catalogue.memory.clone().iter().enumerate() {
             match input.in_memory(&catalogue.reading) {
-                Some(Ok((fabric, left_out))) => {
-                    catalogue.add(vec![Entry::new(Origin::Memory(at), None, fabric, true)?]);
+                Some(Ok((fabrics, left_out))) => {
+                    for fabric in fabrics {
+                        catalogue.add(vec![Entry::new(Origin::Memory(at), None, fabric, true)?]);
+                    }
                     errors.extend(left_out);
                 }
                 Some(Err(error)) => errors.push(error),
@@ -184,7 +186,7 @@ impl Catalogue {
             Origin::Group(group) => self.library.read(group, &|_: &Path| ()).0,
             Origin::Memory(at) => {
                 let read = self.memory[at].in_memory(&self.reading).and_then(Result::ok);
-                read.into_iter().map(|(fabric, _)| fabric).collect()
+                read.map(|(fabrics, _)| fabrics).unwrap_or_default()
             }
         }
     }

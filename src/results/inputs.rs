@@ -12,7 +12,7 @@ use super::observer::Observer;
 use crate::characterise::{FabricSheet, Modulus, Settings, characterise};
 use crate::finding::{Finding, Place};
 use crate::instrument::{
-    FabricInput, Inference, Library, ReadError, ReadSettings, ResultValue, parse, read_dialect,
+    FabricInput, Inference, Library, ReadError, ReadSettings, parse_fabrics, read_dialect,
 };
 use crate::platform::files;
 use crate::report::table::FabricRow;
@@ -60,16 +60,16 @@ impl Input {
     }
 }
 
-/// A fabric in memory with what could not be read of it, or why there is none.
-type InMemory = Result<(FabricInput, Vec<ReadError>), ReadError>;
+/// The fabrics of what is in memory with what could not be read of it, or why there are none.
+type InMemory = Result<(Vec<FabricInput>, Vec<ReadError>), ReadError>;
 
 impl Input {
-    /// The fabric that it is itself; `None` of what is on disk.
+    /// The fabrics that it is itself; `None` of what is on disk.
     pub(super) fn in_memory(&self, settings: &ReadSettings) -> Option<InMemory> {
         match self {
             Self::Path(_) => None,
-            Self::Memory { name, bytes } => Some(fabric_in_memory(name, bytes, settings)),
-            Self::Fabric(fabric) => Some(Ok(((**fabric).clone(), Vec::new()))),
+            Self::Memory { name, bytes } => Some(parse_fabrics(name, bytes, settings)),
+            Self::Fabric(fabric) => Some(Ok((vec![(**fabric).clone()], Vec::new()))),
         }
     }
 }
@@ -227,8 +227,8 @@ impl Reading {
             observer.part(what, library.files(), || library.each(&|_| observer.step(), &work))?;
         for input in inputs {
             match input.in_memory(&settings) {
-                Some(Ok((fabric, left_out))) => {
-                    done.push(work(fabric));
+                Some(Ok((fabrics, left_out))) => {
+                    done.extend(fabrics.into_iter().map(&work));
                     errors.extend(left_out);
                 }
                 Some(Err(error)) => errors.push(error),
@@ -280,26 +280,6 @@ fn bad_settings(place: Place, reason: &str) -> Failure {
 pub(super) fn without_memory(inputs: &[Input]) -> Vec<PathBuf> {
     let on_disk = inputs.iter().filter(|input| matches!(input, Input::Path(_)));
     on_disk.map(|input| input.path().to_path_buf()).collect()
-}
-
-/// The fabric of a file in memory, and the errors of those that a table in it could not give.
-fn fabric_in_memory(path: &Path, bytes: &[u8], settings: &ReadSettings) -> InMemory {
-    let content = parse(path, bytes, settings)?;
-    let sample = content.measurements.iter().find_map(|m| m.sample.clone());
-    let results: Vec<ResultValue> = content.results.into_iter().map(|(_, value)| value).collect();
-    let fabric = FabricInput {
-        name: sample.unwrap_or_else(|| name_in_memory(path)),
-        path: path.to_path_buf(),
-        measurements: content.measurements,
-        results,
-        stiffnesses: content.stiffnesses.into_iter().map(|(_, stiffness)| stiffness).collect(),
-        fab: content.fab.into_iter().collect(),
-        inference: vec![Inference { path: path.to_path_buf(), decisions: content.inference }],
-        sources: vec![content.source],
-        findings: content.findings,
-        ..FabricInput::default()
-    };
-    Ok((fabric, content.failures))
 }
 
 /// The name behind what stands for a path: `stdin` of `<stdin>`, the stem of a file.

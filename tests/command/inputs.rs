@@ -224,3 +224,27 @@ fn a_name_that_is_no_utf_8_stops_nothing() {
         "and the manifest"
     );
 }
+
+/// A table of two fabrics is two from standard input as from disk; their values were averaged.
+#[test]
+fn a_table_of_several_fabrics_on_standard_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = "Fabric,B (gf·cm²/cm) warp\nF1,0.08\nF2,0.2\n";
+    let found: Value =
+        serde_json::from_slice(&run_in(folder.path(), &["characterise", "-", "--json", "-q"], table).stdout)
+            .unwrap();
+    let names: Vec<&str> =
+        found["fabrics"].as_array().unwrap().iter().map(|f| f["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["F1", "F2"]);
+    assert_eq!(found["fabrics"][1]["parameters"]["B"]["warp"]["n"], 1);
+    // A file that names nothing is called after where it comes from.
+    let bare = "Direction,B (gf·cm²/cm)\nwarp,0.08\n";
+    let found: Value =
+        serde_json::from_slice(&run_in(folder.path(), &["characterise", "-", "--json", "-q"], bare).stdout)
+            .unwrap();
+    assert_eq!(found["fabrics"][0]["name"], "stdin");
+    // And so when it is read again for a run.
+    let output = run_in(folder.path(), &["run", "-", "--no-charts", "-o", "out", "-q"], table);
+    let rows = fs::read_to_string(folder.path().join("out/fabrics.csv")).unwrap();
+    assert!(rows.contains("F1") && rows.contains("F2"), "{rows}{:?}", status_and_errors(&output));
+}
