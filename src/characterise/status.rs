@@ -275,6 +275,7 @@ fn of_reading<'a>(fact: &'a ReadFact, place: Option<&'a Place>) -> Option<(Scope
             Some((Scope::Direction(*direction), ValueStatus::Doubtful))
         }
         ReadFact::RecordsOfStates { record, .. } => Some((Scope::Record(record), ValueStatus::Doubtful)),
+        ReadFact::BranchesJoined { record, .. } => Some((Scope::Record(record), ValueStatus::Inferred)),
         ReadFact::TravelAsThickness { .. } => Some((Scope::Travel(place?), ValueStatus::Assumed)),
         ReadFact::SeveralTables { keys, .. }
         | ReadFact::NumbersAsSpecimens { keys }

@@ -9,8 +9,12 @@ use super::{Direction, Measurement, Test};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::quantity::Curve;
 
-/// What two branches of one specimen have in common: test and direction, and the name without the word for the branch.
-type OfRecord = (Test, Option<Direction>, String);
+/// What two branches of one specimen have in common: test, direction, specimen and sample, and the name and its folder without the word
+/// for the branch.
+type OfRecord = (Test, Option<Direction>, usize, Option<String>, String);
+
+/// How far apart, as a part of the range, the ends of two branches may be, and how far back a single one may go.
+const APART: f64 = 0.05;
 
 /// Makes one record of a loading and an unloading branch, where the names of two differ by the words for these alone, and tells it (R149). Each
 /// record has its name; names of records that go are taken out.
@@ -23,7 +27,10 @@ pub(super) fn join(
     let mut of_record: BTreeMap<OfRecord, Vec<(usize, BranchColumn)>> = BTreeMap::new();
     for (at, (record, name)) in records.iter().zip(names.iter()).enumerate() {
         if let Some((rest, branch)) = split(name, vocabulary) {
-            of_record.entry((record.test, record.direction, rest)).or_default().push((at, branch));
+            let folder = record.source.path.parent().unwrap_or(Path::new("")).display().to_string();
+            let sample = record.sample.as_deref().map(|sample| without_branch(sample, vocabulary));
+            let key = (record.test, record.direction, record.specimen, sample, format!("{folder}/{rest}"));
+            of_record.entry(key).or_default().push((at, branch));
         }
     }
     let (mut gone, mut found) = (Vec::new(), Vec::new());
@@ -34,6 +41,9 @@ pub(super) fn join(
             | [(b, BranchColumn::Unloading), (a, BranchColumn::Loading)] => (a, b),
             _ => continue,
         };
+        if !continue_each_other(&records[loading].curve, &records[unloading].curve) {
+            continue;
+        }
         let parts = [names[loading].clone(), names[unloading].clone()];
         let branch = records[unloading].clone();
         let record = &mut records[loading];
@@ -53,11 +63,40 @@ pub(super) fn join(
     found
 }
 
+/// Whether two curves are single branches that meet where loading ended: a whole loop is a record of its own.
+fn continue_each_other(loading: &Curve, unloading: &Curve) -> bool {
+    let Some(end) = loading.points().last().filter(|_| is_branch(loading) && is_branch(unloading)) else {
+        return false;
+    };
+    let reach = [APART * range(&loading.x), APART * range(&loading.y)];
+    let mut ends = [unloading.points().next(), unloading.points().last()].into_iter().flatten();
+    ends.any(|point| (point.0 - end.0).abs() <= reach[0] && (point.1 - end.1).abs() <= reach[1])
+}
+
+fn range(values: &[f64]) -> f64 {
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    high - low
+}
+
+/// Whether the abscissa runs one way.
+fn is_branch(curve: &Curve) -> bool {
+    let (Some(first), Some(last)) = (curve.x.first(), curve.x.last()) else { return false };
+    let course = last - first;
+    let back = curve.x.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| step * course < 0.0);
+    course != 0.0 && back.map(f64::abs).sum::<f64>() <= APART * course.abs()
+}
+
+fn without_branch(name: &str, vocabulary: Vocabulary<'_>) -> String {
+    split(name, vocabulary).map_or_else(|| name.to_string(), |(rest, _)| rest)
+}
+
 /// Puts an unloading branch behind a record, from the end where loading ended.
 fn append(record: &mut Measurement, branch: &Measurement) {
     let end = record.curve.x.last().copied().unwrap_or_default();
     let distance = |x: Option<&f64>| x.map_or(f64::INFINITY, |x| (x - end).abs());
     let is_turned = distance(branch.curve.x.last()) < distance(branch.curve.x.first());
+    debug_assert_eq!(branch.lines.len(), branch.curve.len());
     let mut points: Vec<((f64, f64), usize)> =
         branch.curve.points().zip(branch.lines.iter().copied()).collect();
     if is_turned {

@@ -72,13 +72,33 @@ const CHANGES: [&str; 22] = [
     "变化率",
 ];
 /// What leads on from the head of a title to what it is of.
-const OF: [&str; 24] = [
-    "with", "to", "vs", "of", "for", "between", "by", "after", "due", "der", "des", "von", "zwischen",
+const OF: [&str; 25] = [
+    "in", "with", "to", "vs", "of", "for", "between", "by", "after", "due", "der", "des", "von", "zwischen",
     "nach", "de", "du", "del", "della", "di", "do", "da", "dos", "das", "van",
 ];
 /// What tells that a title names more than one thing.
 const AND: [&str; 14] =
     ["and", "with", "incl", "including", "und", "mit", "et", "avec", "y", "con", "e", "com", "en", "plus"];
+/// What a remark has, and no title.
+const VERBS: [&str; 14] =
+    ["is", "are", "was", "were", "ist", "sind", "war", "waren", "est", "sont", "son", "sono", "sao", "given"];
+/// What stands before a change without making it that of something else.
+const QUALIFIERS: [&str; 5] = ["percent", "prozent", "relativ", "mean", "average"];
+/// Where deviations stand that a remark speaks of: `in brackets`.
+const WHERE: [&str; 10] = [
+    "brackets",
+    "parentheses",
+    "parenthesis",
+    "italics",
+    "italic",
+    "bold",
+    "klammern",
+    "parentesi",
+    "parenteses",
+    "parentesis",
+];
+/// Names of a spread that a sheet has for something else.
+const NAMES: [&str; 4] = ["sigma", "error", "dev", "err"];
 /// Words before the head of a title, `Relative changes`, and those of a phrase.
 const BEFORE: usize = 3;
 const PHRASE: usize = 4;
@@ -86,22 +106,35 @@ const PHRASE: usize = 4;
 /// Whether a line over a table says that its numbers are no values.
 pub(super) fn is_of_no_values(text: &str, v: Vocabulary<'_>) -> bool {
     let text = folded(text);
-    let title = without_number(&text);
+    let title = without_number(&text).replace(" (%)", "%").replace("(%)", "%");
     // What stands behind a mark or in brackets is another thing.
     let marks = ['(', '[', ',', ';', '±', '&', '+', '/'];
     let (head, rest) = title.split_at(title.find(marks).unwrap_or(title.len()));
-    let mut has_percent = rest.contains('%') || normalised(rest).contains("percent");
+    // `Weight reduction (10 %)` is a treatment.
+    let is_amount = rest.contains(|c: char| c.is_ascii_digit());
+    let mut has_percent =
+        head.contains('%') || (!is_amount && (rest.contains('%') || normalised(rest).contains("percent")));
     let words = words_of(head);
+    if words.iter().any(|word| VERBS.contains(&normalised(word).as_str())) {
+        return false;
+    }
+    let mut is_head = true;
     for at in 0..words.len().min(BEFORE + 1) {
         let word = normalised(words[at]);
         if AND.contains(&word.as_str()) {
             return false;
         }
         has_percent |= word.starts_with("percent") || word.starts_with("prozent");
+        is_head &= at == 0 || QUALIFIERS.iter().any(|start| normalised(words[at - 1]).starts_with(start));
         for n in 1..=PHRASE.min(words.len() - at) {
-            let leads_on = words.get(at + n).is_none_or(|word| OF.contains(&normalised(word).as_str()));
+            let next = words.get(at + n).map(|word| normalised(word));
+            // `Standard deviations in brackets` is a remark on values.
+            let says_where = next.as_deref() == Some("in")
+                && words.get(at + n + 1).is_some_and(|word| WHERE.contains(&normalised(word).as_str()));
+            let leads_on = next.is_none_or(|word| OF.contains(&word.as_str())) && !says_where;
             let phrase = words[at..at + n].join(" ");
-            if leads_on && is_of_comparison(&phrase, has_percent, v) && !names_mean(&words[at + n..], v) {
+            let in_percent = has_percent && is_head;
+            if leads_on && is_of_comparison(&phrase, in_percent, v) && !names_mean(&words[at + n..], v) {
                 return true;
             }
         }
@@ -110,17 +143,26 @@ pub(super) fn is_of_no_values(text: &str, v: Vocabulary<'_>) -> bool {
 }
 
 /// The same of the name of a sheet: only as its first or last words, `cotton_SD`; `Mean and SD` holds values.
-pub(super) fn is_name_of_no_values(name: &str, v: Vocabulary<'_>) -> bool {
+fn is_name_of_no_values(name: &str, v: Vocabulary<'_>) -> bool {
     let name = folded(name);
     let words = words_of(&name);
     let ends = (1..=PHRASE.min(words.len())).flat_map(|n| [&words[..n], &words[words.len() - n..]]);
     !names_mean(&words, v)
         && !words.iter().any(|word| AND.contains(&normalised(word).as_str()))
-        && ends.into_iter().any(|phrase| is_of_comparison(&phrase.join(" "), false, v))
+        && ends.into_iter().map(|phrase| phrase.join(" ")).any(|phrase| {
+            !NAMES.contains(&normalised(&phrase).as_str()) && is_of_comparison(&phrase, false, v)
+        })
+}
+
+/// The name of a sheet that says so by itself, or is that of a spread beside a sheet of means.
+pub(super) fn sheet_of_no_values(name: &str, sheets: &[&str], v: Vocabulary<'_>) -> Option<String> {
+    let has_mean = sheets.iter().any(|other| v.statistic(other) == Some(Statistic::Mean));
+    let beside_mean = has_mean && v.statistic(name) == Some(Statistic::Spread);
+    (beside_mean || is_name_of_no_values(name, v)).then(|| name.to_string())
 }
 
 fn words_of(text: &str) -> Vec<&str> {
-    text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect()
+    text.split(|c: char| !(c.is_alphanumeric() || c == '%')).filter(|word| !word.is_empty()).collect()
 }
 
 /// Whether some of the words, up to three together, name a mean.
@@ -183,7 +225,8 @@ fn is_spread(phrase: &str, v: Vocabulary<'_>) -> bool {
         let singular: Vec<&str> =
             phrase.split(' ').map(|word| word.strip_suffix(plural).unwrap_or(word)).collect();
         let name = singular.join(" ");
-        let is_plain = name.chars().count() > PHRASE || !name.is_ascii();
+        // `CV%` is no name.
+        let is_plain = name.chars().count() > PHRASE || !name.is_ascii() || name.ends_with('%');
         v.statistic(&name) == Some(Statistic::Spread)
             && (is_plain || v.table_column(&name) == Some(TableColumn::Sd))
     })
@@ -205,6 +248,11 @@ mod tests {
             "Coefficients of variation (%)",
             "Coefficient of variation of the low-stress properties",
             "Change of KES parameters after washing (%)",
+            "Percentage change in KES parameters after washing",
+            "Differences in bending rigidity",
+            "CV% of the KES parameters",
+            "CV (%) of the KES parameters",
+            "Relative change of B (%)",
             "Percentage change of bending rigidity",
             "Pearson correlation coefficients",
             "Correlation between B and hand",
@@ -225,6 +273,11 @@ mod tests {
             "KES results of standard fabrics",
             "Variation of bending rigidity with washing",
             "CV",
+            "Weight reduction (10%)",
+            "Differences between fabrics are significant at p < 0.05",
+            "Standard deviation of all values is below 5 %",
+            "Effect of moisture variation (percent)",
+            "Standard deviations in parentheses",
             "平均値と標準偏差",
             "Bending",
         ] {
@@ -233,9 +286,11 @@ mod tests {
         for name in ["SD", "cotton_SD", "Correlation", "standard deviation", "KES correlations", "Stdev"] {
             assert!(is_name_of_no_values(name, v), "{name}");
         }
-        for name in ["mean_SD", "Mean ± SD", "CV", "cotton", "results 2", "sd_card_export_1"] {
-            assert!(!is_name_of_no_values(name, v) || name == "sd_card_export_1", "{name}");
+        for name in ["mean_SD", "Mean ± SD", "CV", "cotton", "results 2", "Sigma"] {
+            assert!(!is_name_of_no_values(name, v), "{name}");
         }
+        assert!(sheet_of_no_values("CV", &["Mean", "CV"], v).is_some());
+        assert!(sheet_of_no_values("CV", &["CV", "CO"], v).is_none());
     }
 
     #[test]

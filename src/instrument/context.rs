@@ -24,8 +24,8 @@ pub(super) struct Context<'a> {
     pub conditions: StatedConditions,
     /// What the file name says.
     pub label: Label,
-    /// The name of the sheet, in a workbook.
-    pub sheet: Option<String>,
+    /// The name of the sheet, where it says that its numbers are no values.
+    pub sheet_of_no_values: Option<String>,
     /// What cells said that were looked at.
     pub facets: Seen<Facets>,
     /// What names of columns said that were looked at.

@@ -107,6 +107,20 @@ impl Scanner<'_, '_> {
         }
     }
 
+    /// R118: a column of keys that says something else than the header, which it goes before.
+    pub(super) fn note_entry_in_rows(&mut self, column: &KeyColumn, rows: &[&Row<'_>]) {
+        let v = self.context.vocabulary;
+        let Some(entry) = self.header.known.get(&column.key) else { return };
+        let other = rows
+            .iter()
+            .find(|row| row.get(column.index).is_some_and(|text| !v.says_the_same(text, &entry.text)));
+        let Some(row) = other else { return };
+        let second = row.get(column.index).unwrap_or_default().to_string();
+        let fact = ReadFact::StatedTwice { first: entry.text.clone(), first_line: entry.line, second };
+        let place = Place::at(self.context.path, row.line, row.column(column.index));
+        self.findings.push(Finding::new(fact).at(place));
+    }
+
     /// R118: the name of a column states another direction than the header.
     pub(super) fn note_direction_in_heads(&mut self, pairs: &[Pair]) {
         let vocabulary = self.context.vocabulary;

@@ -265,7 +265,7 @@ problems! {
         "take the picture from above, the whole sheet on a background that is lighter or darker everywhere";
     /// A table whose title says that its numbers are no values.
     "R026" NoValuesByTitle {
-        /// The title, or the name of the sheet or file.
+        /// The title, or the name of the sheet.
         title: String,
     } = "{title:?} says that the numbers are statistics or comparisons, and no values of fabrics",
         "remove the table, or give it another title if it holds values; standard deviations stand beside their values, or in brackets behind them";

@@ -1,8 +1,9 @@
 //! Records below one another whose rows say which they are of, in columns of their own: `fabric, direction, specimen, curvature,
 //! moment`, as programs for statistics keep them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
+use super::angle::{angles, direction_of_angle};
 use super::context::Context;
 use super::dialect::{HeaderKey, TableColumn};
 use super::layout::{Column, Entry, Pair};
@@ -16,7 +17,11 @@ const ROWS: usize = 10;
 #[derive(Clone, Debug)]
 pub(super) struct KeyColumn {
     pub index: usize,
-    key: HeaderKey,
+    pub key: HeaderKey,
+    /// Whether its entries are the angles of directions to the warp.
+    pub are_angles: bool,
+    /// Whether an entry is what the record is called, and not only told from others by.
+    is_named: bool,
 }
 
 /// The records that rows hold, each with the columns of its curves.
@@ -29,18 +34,49 @@ pub(super) fn columns(
     rows: &[&Row<'_>],
     context: &Context<'_>,
 ) -> Vec<KeyColumn> {
-    let mut found: Vec<KeyColumn> = Vec::new();
+    let mut found: Vec<(KeyColumn, BTreeSet<&str>)> = Vec::new();
+    if rows.is_empty() {
+        return Vec::new();
+    }
     for (index, cell) in heading.filled().filter(|(i, _)| curves.iter().all(|column| column.index != *i)) {
         let Some(key) = key_of(&cell.text, context) else { continue };
         let entries: Option<BTreeSet<&str>> = rows.iter().map(|row| row.get(index)).collect();
         let Some(entries) = entries.filter(|entries| entries.len() * ROWS <= rows.len()) else { continue };
-        // Samples that are counted are specimens.
-        let counts = key == HeaderKey::Sample
-            && entries.iter().all(|text| matches!(number(text, context.decimal), Number::Value(_)));
-        found.push(KeyColumn { index, key: if counts { HeaderKey::Specimen } else { key } });
+        let are_angles = key == HeaderKey::Direction && angles(entries.iter().copied()).is_some();
+        let fits = are_angles || entries.iter().all(|text| can_be(key, text, context));
+        let may_be_parts = key != HeaderKey::Direction;
+        if fits && !(may_be_parts && parts_of_one(index, curves, rows, context)) {
+            found.push((KeyColumn { index, key, are_angles, is_named: true }, entries));
+        }
     }
-    let distinct: BTreeSet<HeaderKey> = found.iter().map(|column| column.key).collect();
-    if distinct.len() == found.len() { found } else { Vec::new() }
+    // Samples that are counted are specimens, where nothing else counts these.
+    let counts = found.iter().any(|(column, _)| column.key == HeaderKey::Specimen);
+    for (column, entries) in &mut found {
+        let are_numbers =
+            entries.iter().all(|text| matches!(number(text, context.decimal), Number::Value(_)));
+        if column.key == HeaderKey::Sample && are_numbers && !counts {
+            column.key = HeaderKey::Specimen;
+        }
+        // `a` and `b` tell specimens apart, and are no numbers of them.
+        column.is_named = column.key != HeaderKey::Specimen || entries.iter().all(|text| has_number(text));
+    }
+    let mut columns: Vec<KeyColumn> = found.into_iter().map(|(column, _)| column).collect();
+    // Of two names of the fabric the first is taken; of two counts, specimen and repeat, neither.
+    for at in 0..columns.len() {
+        let key = columns[at].key;
+        let mut others = columns.iter().enumerate().filter(|(i, column)| *i != at && column.key == key);
+        let is_first = match key {
+            HeaderKey::Specimen => others.next().is_none(),
+            _ => others.all(|(other, _)| at < other),
+        };
+        columns[at].is_named &= is_first;
+    }
+    columns
+}
+
+/// Whether a text has a number from 1.
+fn has_number(text: &str) -> bool {
+    text.contains(|c: char| ('1'..='9').contains(&c))
 }
 
 fn key_of(head: &str, context: &Context<'_>) -> Option<HeaderKey> {
@@ -52,28 +88,71 @@ fn key_of(head: &str, context: &Context<'_>) -> Option<HeaderKey> {
     }
 }
 
+/// Whether an entry is one of its key: `up` and `forward` are branches under whatever head, and no direction.
+fn can_be(key: HeaderKey, text: &str, context: &Context<'_>) -> bool {
+    let v = context.vocabulary;
+    if v.branch(text).is_some() {
+        return false;
+    }
+    match key {
+        HeaderKey::Direction => v.direction(text).is_some(),
+        HeaderKey::Specimen => has_number(text) || text.chars().all(char::is_alphabetic),
+        _ => true,
+    }
+}
+
+/// Whether numbers tell the way there from the way back: a run begins where the one above ended, far from where that began.
+fn parts_of_one(index: usize, curves: &[Column], rows: &[&Row<'_>], context: &Context<'_>) -> bool {
+    let Some(abscissa) = curves.iter().find(|column| column.role.is_abscissa()) else { return false };
+    let decimal = context.decimal;
+    let (low, high) = rows
+        .iter()
+        .map(|row| value(row, abscissa, decimal))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+    let mut first = value(rows[0], abscissa, decimal);
+    for pair in rows.windows(2).filter(|pair| pair[0].get(index) != pair[1].get(index)) {
+        let (end, next) = (value(pair[0], abscissa, decimal), value(pair[1], abscissa, decimal));
+        if (end - first).abs() > 0.5 * (high - low) && (next - end).abs() < 0.1 * (high - low) {
+            return true;
+        }
+        first = next;
+    }
+    false
+}
+
+fn value(row: &Row<'_>, column: &Column, decimal: char) -> f64 {
+    match number(row.get(column.index).unwrap_or_default(), decimal) {
+        Number::Value(x) => x,
+        _ => f64::NAN,
+    }
+}
+
 /// Takes rows apart by what their keys say, in the order in which that comes first.
 pub(super) fn records<'t>(pairs: Vec<Pair>, rows: Vec<&'t Row<'t>>, keys: &[KeyColumn]) -> Records<'t> {
-    if keys.is_empty() {
+    if keys.is_empty() || rows.is_empty() {
         return vec![(pairs, rows)];
     }
-    let mut of_entries: Vec<(Vec<&str>, Vec<&'t Row<'t>>)> = Vec::new();
+    let mut places: BTreeMap<Vec<&str>, usize> = BTreeMap::new();
+    let mut of_entries: Vec<Vec<&'t Row<'t>>> = Vec::new();
     for row in rows {
         let entries: Vec<&str> =
             keys.iter().map(|column| row.get(column.index).unwrap_or_default()).collect();
-        // Rows of a record mostly stand together.
-        match of_entries.iter_mut().rfind(|(of, _)| *of == entries) {
-            Some((_, rows)) => rows.push(row),
-            None => of_entries.push((entries, vec![row])),
-        }
+        let place = *places.entry(entries).or_insert(of_entries.len());
+        of_entries.resize_with(of_entries.len().max(place + 1), Vec::new);
+        of_entries[place].push(row);
     }
     let mut records = Vec::new();
-    for (entries, rows) in of_entries {
+    for rows in of_entries {
         let mut pairs = pairs.clone();
         for pair in &mut pairs {
-            for (column, text) in keys.iter().zip(&entries) {
-                let (line, at) = (rows[0].line, rows[0].column(column.index));
-                pair.header.known.insert(column.key, Entry { text: text.to_string(), line, column: at });
+            for column in keys.iter().filter(|column| column.is_named) {
+                let text = rows[0].get(column.index).unwrap_or_default();
+                let text = match direction_of_angle(text).filter(|_| column.are_angles) {
+                    Some(direction) => direction.to_string(),
+                    None => text.to_string(),
+                };
+                let entry = Entry { text, line: rows[0].line, column: rows[0].column(column.index) };
+                pair.header.known.insert(column.key, entry);
             }
         }
         records.push((pairs, rows));
@@ -83,5 +162,5 @@ pub(super) fn records<'t>(pairs: Vec<Pair>, rows: Vec<&'t Row<'t>>, keys: &[KeyC
 
 /// Whether the rows name fabrics.
 pub(super) fn name_fabrics(keys: &[KeyColumn]) -> bool {
-    keys.iter().any(|column| column.key == HeaderKey::Sample)
+    keys.iter().any(|column| column.key == HeaderKey::Sample && column.is_named)
 }

@@ -11,6 +11,7 @@ use super::column_name::ColumnName;
 use super::context::Context;
 use super::dialect::{HeaderKey, Role};
 use super::error::{ReadError, ReadProblem};
+use super::facets::repeats;
 use super::keyed_rows::{self, KeyColumn};
 use super::label::Label;
 use super::pairs;
@@ -39,6 +40,8 @@ pub(super) struct Header {
     pub other: BTreeMap<String, String>,
     /// The last line of words alone since the record before.
     pub caption: Option<String>,
+    /// The number of repeats that a line since the table before states: `Mean values, n = 5`.
+    pub repeats: Option<usize>,
 }
 
 /// A column of a curve.
@@ -105,11 +108,19 @@ pub(super) fn blocks<'t>(
     // The first row of numbers under headings that nobody knows; a remark may look like one, so that it is an error only
     // where nothing else was read.
     let (mut unread, mut behind, mut stray, mut above) = (None, Vec::new(), Vec::new(), Vec::new());
+    let mut title_above: Option<&Row<'_>> = None;
     while let Some(row) = rows.get(scanner.at) {
         if row.is_blank() {
             above.clear();
             scanner.at += 1;
         } else if let Some(columns) = scanner.headings(row) {
+            // `Direction,warp` above results of the record that follows holds for that as well.
+            let direction = scanner.header.known.get(&HeaderKey::Direction);
+            let is_last = |title: &&Row<'_>| direction.is_none_or(|entry| entry.line < title.line);
+            if let Some(title) = title_above.take().filter(is_last) {
+                scanner.header.known.remove(&HeaderKey::Direction);
+                scanner.header_line(title);
+            }
             let (block, part) = scanner.curves(columns)?;
             scanner.add(&mut blocks, block, part);
         } else if let Some((region, end)) = shape::region(rows, scanner.at, context) {
@@ -120,12 +131,9 @@ pub(super) fn blocks<'t>(
             scanner.lists.clear();
             scanner.labels.clear();
             scanner.above = None;
-            let title = region.title.filter(|row| row.filled().nth(1).is_some());
+            title_above = region.title.filter(|row| row.filled().nth(1).is_some());
             blocks.push(Block::Table { header: scanner.header.clone(), region });
-            // `Direction,warp` above results of the record that follows holds for that as well.
-            if let Some(row) = title {
-                scanner.header_line(row);
-            }
+            scanner.header.repeats = None;
         } else if scanner.labels(row) {
             scanner.at += 1;
         } else if let Some(columns) = scanner.columns_above() {
@@ -299,6 +307,13 @@ impl<'t> Scanner<'t, '_> {
         self.check_width(heading, &rows)?;
         let keys = keyed_rows::columns(heading, &columns, &rows, self.context);
         self.note_strange_columns(heading, &columns, &keys, &rows);
+        for column in &keys {
+            self.note_entry_in_rows(column, &rows);
+            if column.are_angles {
+                let place = Place::at(self.context.path, heading.line, heading.column(column.index));
+                self.findings.push(Finding::new(ReadFact::AnglesAsDirections {}).at(place));
+            }
+        }
         (self.above, self.tells_another) = (Some(columns.clone()), false);
         let mut pairs = self.pairs(columns, &rows)?;
         self.distribute(&mut pairs)?;
@@ -457,6 +472,11 @@ impl<'t> Scanner<'t, '_> {
     }
 
     fn keep(&mut self, name: &str, mut values: Vec<(String, usize)>, line: usize) {
+        let whole = values.iter().fold(name.to_string(), |text, (value, _)| match value.contains('=') {
+            true => format!("{text}, {value}"),
+            false => format!("{text} = {value}"),
+        });
+        self.header.repeats = whole.split([',', ';', '(', ')']).find_map(repeats).or(self.header.repeats);
         let name = name.trim_start_matches('#');
         let (plain, own_unit) = split_unit(name);
         let plain = bare(&plain);

@@ -6,6 +6,7 @@
 
 mod abscissae;
 mod across;
+mod angle;
 pub mod anonymise;
 mod assembled;
 mod axis;

@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 use super::blanks;
 use super::branches;
 use super::browzwear;
+use super::caption;
 use super::conditions::StatedConditions;
 use super::context::Context;
 use super::curves;
@@ -221,7 +222,7 @@ fn context<'a>(
         kes_units: settings.kes_units || dialect.is_some_and(|d| d.kes_units),
         conditions: settings.conditions.or(&of_dialect),
         label: label(path, vocabulary),
-        sheet: None,
+        sheet_of_no_values: None,
         facets: Seen::default(),
         column_names: Seen::default(),
     }
@@ -273,7 +274,7 @@ fn sheets(
         let dialect = settings.dialects.iter().find(|d| d.matches.is_empty());
         let mut context = context(path, settings, dialect, '\t', decimal);
         context.path = at;
-        context.sheet = Some(sheet.name.clone());
+        context.sheet_of_no_values = caption::sheet_of_no_values(&sheet.name, &names, context.vocabulary);
         let own = Label::parse(&sheet.name, context.vocabulary);
         let letter = letters.get(sheet.name.as_str()).copied();
         let own = Label { direction: own.direction.or(letter), ..own };
@@ -313,7 +314,15 @@ fn sheets(
     beside_curves(tables, content)?;
     let vocabulary = Vocabulary::new(&settings.dialects);
     let joined = branches::join(&mut content.measurements, &mut of_sheets, path, vocabulary);
-    let is_joined = !joined.is_empty();
+    if !joined.is_empty() {
+        // A record of two sheets is called without the words for its branches.
+        let is_joined = |name: &&str| of_sheets.iter().any(|sheet| sheet == name);
+        with_curves.retain(is_joined);
+        let others = of_sheets.iter().map(String::as_str).filter(|name| !letters.contains_key(name));
+        with_curves.extend(others.collect::<BTreeSet<_>>());
+        with_curves.sort_unstable();
+        with_curves.dedup();
+    }
     content.findings.extend(joined);
     let means = means::leave_out(&mut content.measurements, &of_sheets, "sheets", path, vocabulary);
     if let Some(means) = means {
@@ -321,7 +330,7 @@ fn sheets(
         content.findings.push(means);
     }
     let samples = samples::of_sheets(&with_curves, vocabulary);
-    if samples.len() > 1 && !is_joined {
+    if samples.len() > 1 {
         let mut names = of_sheets.iter();
         let records = samples::averaged(&content.measurements, |_| names.next().cloned().unwrap_or_default());
         let fact = ReadFact::SeveralSamples { samples, records };
@@ -395,9 +404,9 @@ fn table(
             Block::Curves { pairs, rows, keys } => {
                 content.rows_name_fabrics |= keyed_rows::name_fabrics(&keys);
                 let records = keyed_rows::records(pairs, rows, &keys);
-                let last = records.len() - 1;
+                let of_block = records.len();
                 for (k, (pairs, rows)) in records.into_iter().enumerate() {
-                    curves_of(&pairs, &rows, ends_file && k == last, context, content)?;
+                    curves_of(&pairs, &rows, ends_file && k + 1 == of_block, context, content)?;
                 }
             }
             Block::Table { header, region } => {

@@ -35,7 +35,7 @@ use row_facts::{RowFacts, Title, no_direction};
 use super::context::Context;
 use super::dialect::{HeaderKey, Statistic, TableColumn};
 use super::error::{ReadError, ReadProblem};
-use super::facets::{Facets, repeats};
+use super::facets::Facets;
 use super::layout::Header;
 use super::raw::Row;
 use super::shape::{self, Region};
@@ -243,11 +243,14 @@ impl<'t> Table<'t, '_> {
             if let Some(title) = titles.get(&row.line) {
                 match title {
                     Title::Fabric(name) => {
+                        sums_up = false;
                         self.above = Some(name.clone());
                         self.end_section(&mut within);
                     }
                     Title::Group(name) => {
-                        group = Some(name);
+                        (group, sums_up) = (Some(name), false);
+                        // Rows of directions below it are of the group itself.
+                        self.above = None;
                         self.end_section(&mut within);
                     }
                     Title::Specimen(number) => specimen = Some(*number),
@@ -263,12 +266,16 @@ impl<'t> Table<'t, '_> {
                 continue;
             }
             self.note_row_in_one_cell(row);
+            if self.names_a_test(row) && group.is_some() {
+                continue;
+            }
             let facts = self.within_heads(row, region).and_then(|()| self.row_facts(row));
             match facts {
                 Ok(mut facts) => {
                     facts.facets.index = facts.facets.index.or(specimen);
                     facts.group = group.cloned();
-                    facts.fabric = facts.fabric.take().map(|name| facts.in_group(name));
+                    let named = facts.fabric.take().map(|name| facts.in_group(name));
+                    facts.fabric = named.or_else(|| group.cloned());
                     out.push((*row, facts));
                 }
                 Err(error) => {
@@ -284,6 +291,13 @@ impl<'t> Table<'t, '_> {
         Ok(out)
     }
 
+    /// `Bending` alone, over its parameters or over rows of one of several groups.
+    fn names_a_test(&self, row: &Row<'_>) -> bool {
+        let mut filled = row.filled();
+        let text = filled.next().filter(|_| filled.next().is_none()).map(|(_, cell)| &cell.text);
+        text.is_some_and(|text| self.context.vocabulary.test_exactly(text).is_some())
+    }
+
     /// A number beyond the last heading is a part of another, where the delimiter is a decimal mark as well.
     fn within_heads(&self, row: &Row<'_>, region: &Region<'_>) -> Result<(), ReadError> {
         let named = region.heads.iter().filter_map(|h| h.filled().last()).map(|(i, _)| i + 1).max();
@@ -295,11 +309,19 @@ impl<'t> Table<'t, '_> {
     }
 
     fn row_facts(&mut self, row: &Row<'_>) -> Result<RowFacts, ReadError> {
-        let mut facts = RowFacts { n: 1, ..RowFacts::default() };
+        let mut facts = RowFacts::default();
         let (mut id, mut fabric) = (None, None);
         let labels = self.layout.labels.clone();
         for label in &labels {
-            let Some(text) = row.get(label.index) else { continue };
+            let Some(text) = row.get(label.index) else {
+                // A state stands in the first of its rows only, as of merged cells.
+                if let Some(before) =
+                    self.states.last_key_value().and_then(|(_, of)| of.get(&label.index)).cloned()
+                {
+                    self.states.entry(row.line).or_default().insert(label.index, before);
+                }
+                continue;
+            };
             if label.meta.is_none() {
                 self.states.entry(row.line).or_default().insert(label.index, text.to_string());
             }
@@ -340,7 +362,7 @@ impl<'t> Table<'t, '_> {
                         facts.label = text.to_string();
                     }
                 }
-                Some(TableColumn::N) => facts.n = self.repeats(row, label.index, text)?,
+                Some(TableColumn::N) => facts.n = Some(self.repeats(row, label.index, text)?),
                 Some(TableColumn::Unit) => {
                     self.one_unit(row, label.index, facts.facets.unit.as_deref(), Some(text))?;
                     facts.facets.unit = Some(folded(text).into_owned());
@@ -413,15 +435,6 @@ impl<'t> Table<'t, '_> {
     fn is_of_no_direction(&self, text: &str) -> bool {
         let of_all = self.context.vocabulary.statistic(text) == Some(Statistic::Mean);
         of_all || is_gap(text) || matches!(normalised(text).as_str(), "" | "all" | "none")
-    }
-
-    /// The number of repeats in a line above a table of means: `Mean values, n = 5`.
-    fn stated_repeats(&self) -> Option<usize> {
-        let lines = self.header.other.iter().map(|(name, value)| match value.contains('=') {
-            true => value.clone(),
-            false => format!("{name} = {value}"),
-        });
-        lines.into_iter().find_map(|line| line.split([',', ';', '(', ')']).find_map(repeats))
     }
 
     fn repeats(&self, row: &Row<'_>, index: usize, cell: &str) -> Result<usize, ReadError> {
@@ -513,7 +526,7 @@ impl<'t> Table<'t, '_> {
                 row_direction: facts.facets.direction,
                 mean: reading.mean * unit.factor,
                 sd: reading.sd.map(|s| s * unit.factor),
-                n: reading.repeats.or(all.repeats).or(self.stated_repeats()).unwrap_or(facts.n),
+                n: reading.repeats.or(all.repeats).or(facts.n).or(self.header.repeats).unwrap_or(1),
                 status: all.status,
                 line: row.line,
                 column: row.column(column.index),

@@ -105,13 +105,14 @@ fn kind(row: &Row<'_>, context: &Context<'_>) -> Kind {
     if let Some(direction) = section(row, context) {
         return Kind::Section(direction);
     }
-    if states_name(row, context) || row.filled().any(|(_, cell)| !numbered(&cell.text, context).is_empty()) {
+    if states_name(row, context) || is_key_of_numbers(row, context) {
         return Kind::Other;
     }
     let (mut words, mut numbers, mut units, mut unknown, mut dashes) = (0, 0, 0, 0, 0);
     let says = facets(row, context);
-    // `Mean values, n = 5` over a table.
-    if row.filled().any(|(_, cell)| repeats(&cell.text).is_some()) {
+    // `Mean values, n = 5` over a table; several of them head columns.
+    let states_repeats = row.filled().filter(|(_, cell)| repeats(&cell.text).is_some()).count() == 1;
+    if states_repeats && row.get(0).is_some() && !says.iter().any(Facets::names_value) {
         return Kind::Other;
     }
     // `Specimen 2` alone is a title of rows, and heads no column.
@@ -139,6 +140,10 @@ fn kind(row: &Row<'_>, context: &Context<'_>) -> Kind {
         (0, 0, 1.., 0) => Kind::Units,
         // `1 2 3 AVE` over columns.
         (1.., 2.., 0, _) if dashes == 0 && words + unknown <= 6 && counts(row, context) => Kind::Head,
+        // `, 1, 2, 3, AV`: a word that is not known among them.
+        (0, 2.., 0, 1..) if row.get(0).is_none() && dashes == 0 && unknown <= 6 && counts(row, context) => {
+            Kind::Head
+        }
         (_, 1.., ..) => Kind::Values,
         (1.., 0, ..) => Kind::Head,
         _ => Kind::Other,
@@ -194,13 +199,29 @@ fn states_name(row: &Row<'_>, context: &Context<'_>) -> bool {
 
 /// The directions that a key gives to numbers behind symbols: `1 = weft, 2 = warp`.
 pub(super) fn numbered(text: &str, context: &Context<'_>) -> Vec<(usize, Direction)> {
-    let marks = [',', ';', '(', ')'];
-    let entry = |part: &str| {
-        let (number, name) = part.split_once(['=', ':'])?;
-        let number = number.trim().parse().ok().filter(|n| (1..=2).contains(n))?;
-        Some((number, context.vocabulary.direction_exactly(name.trim())?))
-    };
-    text.split(marks).filter_map(entry).collect()
+    let (mut tokens, mut pairs) = (Vec::new(), Vec::new());
+    for word in text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()) {
+        match (word, context.vocabulary.direction_exactly(word)) {
+            ("1", _) => tokens.push(Err(1)),
+            ("2", _) => tokens.push(Err(2)),
+            (_, Some(direction)) if word.chars().count() > 1 => tokens.push(Ok(direction)),
+            _ => {}
+        }
+    }
+    for pair in tokens.chunks(2) {
+        match pair {
+            [Err(number), Ok(direction)] => pairs.push((*number, *direction)),
+            // `weft = 1`; `Weft 1` is a specimen.
+            [Ok(direction), Err(number)] if text.contains('=') => pairs.push((*number, *direction)),
+            _ => return Vec::new(),
+        }
+    }
+    pairs
+}
+
+/// Whether a row is such a key, and heads no columns.
+fn is_key_of_numbers(row: &Row<'_>, context: &Context<'_>) -> bool {
+    row.get(0).is_some() && row.filled().all(|(_, cell)| !numbered(&cell.text, context).is_empty())
 }
 
 /// Whether a row numbers columns: nothing in its first cell, then 1, 2 and so on, and perhaps from 1 again, with statistics between.

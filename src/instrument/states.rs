@@ -26,7 +26,7 @@ pub(super) fn told_apart(entries: &[String], decimal: char) -> Option<[String; 2
             let whole = numbers.iter().all(|v| v.fract() == 0.0);
             let round = numbers.iter().all(|v| v % 5.0 == 0.0);
             let rises = numbers.windows(2).all(|w| w[1] > w[0] + 1.0);
-            // Nothing of a treatment beside some of it; the second of two rows is none of 24.
+            // `0` and `24`: before a treatment, and behind it.
             let from_none = numbers[0] == 0.0 && numbers.last().is_some_and(|last| *last > 2.0);
             let set = (numbers.len() > 2 || round || has_word || from_none) && rises;
             let years = numbers.iter().all(|v| (1900.0..2100.0).contains(v));

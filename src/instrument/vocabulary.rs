@@ -324,6 +324,14 @@ impl<'a> Vocabulary<'a> {
         found.or_else(|| built_in.first().map(|(_, statistic)| *statistic))
     }
 
+    /// Whether two entries are the same direction or the same word.
+    pub fn says_the_same(self, a: &str, b: &str) -> bool {
+        match (self.direction(a), self.direction(b)) {
+            (None, None) => normalised(a) == normalised(b),
+            (a, b) => a == b,
+        }
+    }
+
     pub fn parameter(self, name: &str) -> Option<Parameter> {
         // `X2HB` of R, whose names begin with a letter.
         let name = name

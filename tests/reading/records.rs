@@ -273,7 +273,31 @@ fn records_in_rows_that_name_them() {
     let mut mixed: Vec<&str> = one.lines().collect();
     mixed.sort_by_key(|row| row.split(',').nth(2) == Some("2"));
     let mixed = read(&format!("{head}{}\n", mixed.join("\n")));
-    assert_eq!(mixed.measurements.iter().map(|m| m.curve.clone()).collect::<Vec<_>>().len(), 3);
+    let curves = |content: &FileContent| -> Vec<_> {
+        content.measurements.iter().map(|m| (m.direction, m.specimen, m.curve.clone())).collect()
+    };
+    let (mut once, mut again) = (curves(&found), curves(&mixed));
+    once.sort_by_key(|(direction, specimen, _)| (*direction, *specimen));
+    again.sort_by_key(|(direction, specimen, _)| (*direction, *specimen));
+    assert_eq!(once, again);
+    // Headings without rows, and a column that tells the way there from the way back.
+    assert_eq!(attempt("specimen,curvature (1/cm),moment (gf·cm/cm)\n").unwrap_err().code(), "R002");
+    let ways = record("", 0.08)
+        .lines()
+        .enumerate()
+        .map(|(i, row)| format!("{}{row}\n", 1 + i / 21))
+        .collect::<String>();
+    let ways = read(&format!("run,curvature (1/cm),moment (gf·cm/cm)\n{ways}"));
+    assert_eq!((ways.measurements.len(), ways.measurements[0].curve.len()), (1, 41));
+    let branches: String = record("", 0.08)
+        .lines()
+        .enumerate()
+        .map(|(i, row)| format!("{}{row}\n", if i < 21 { "up" } else { "down" }))
+        .collect();
+    assert_eq!(
+        read(&format!("direction,curvature (1/cm),moment (gf·cm/cm)\n{branches}")).measurements.len(),
+        1
+    );
     // A column that counts samples is no key, and one that is the same everywhere is.
     let counted: String =
         record("", 0.08).lines().enumerate().map(|(i, row)| format!("warp,{}{row}\n", i + 1)).collect();

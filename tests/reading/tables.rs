@@ -343,7 +343,7 @@ fn layouts_of_reports() {
     // `X2HB` of R.
     let of_r = read("fabric,direction,B,X2HB\nF1,warp,0.0812,0.04\n");
     assert_eq!(values(&of_r).last().map(|v| (v.1, v.3)), Some((Parameter::Hb, 0.04)));
-    // A reference in brackets is no deviation.
+    // `[0.004]` is a deviation.
     assert!(read("Fabric,Direction,B,G\nF1,warp,0.0812 [0.004],0.5\n").results[0].1.sd.is_some());
     // Angles of one kind only are none.
     assert_eq!(attempt("Fabric,Direction,B\nF1,0,0.0812\nF2,0,0.0533\n").unwrap_err().code(), "R018");
@@ -371,4 +371,55 @@ fn numbers_may_be_states_and_signs_means() {
         "Fabric,Direction,Statistic,B\nF1,warp,Mean,0.0812\nF1,warp,lower.CL,0.07\nF1,warp,upper.CL,0.09\n",
     );
     assert_eq!(values(&limits), [("F1".into(), Parameter::B, WARP, 0.0812)]);
+}
+
+/// Titles of fabrics over rows of directions, also on two levels and above the second half only; tests are no fabrics.
+#[test]
+fn titles_of_fabrics_over_directions() {
+    let head = "Fabric,B (gf·cm²/cm),2HB (gf·cm/cm)\n";
+    let of = |text: &str| -> Vec<(String, Option<Direction>, f64)> {
+        let found = values(&read(&format!("{head}{text}")));
+        found
+            .into_iter()
+            .filter(|v| v.1 == Parameter::B)
+            .map(|(name, _, direction, mean)| (name, direction, mean))
+            .collect()
+    };
+    let v = |name: &str, direction, mean| (name.to_string(), direction, mean);
+    let plain = of("Cotton,,\nWarp,0.08,0.04\nWeft,0.05,0.03\nWool,,\nWarp,0.1,0.06\nWeft,0.07,0.05\n");
+    assert_eq!(
+        plain,
+        [v("Cotton", WARP, 0.08), v("Cotton", WEFT, 0.05), v("Wool", WARP, 0.1), v("Wool", WEFT, 0.07)]
+    );
+    let two = of(
+        "Cotton,,\nBefore,,\nWarp,0.08,0.04\nAfter,,\nWarp,0.1,0.06\nWool,,\nBefore,,\nWarp,0.2,0.1\nAfter,,\nWarp,0.3,0.1\n",
+    );
+    let names: Vec<&str> = two.iter().map(|v| v.0.as_str()).collect();
+    assert_eq!(names, ["Cotton After", "Cotton Before", "Wool After", "Wool Before"]);
+    let tests = of("Cotton,,\nBending,,\nWarp,0.08,0.04\nWool,,\nBending,,\nWarp,0.1,0.06\n");
+    assert_eq!(tests, [v("Cotton", WARP, 0.08), v("Wool", WARP, 0.1)]);
+    let second =
+        read("Fabric,B warp (gf·cm²/cm)\nCotton,0.08\nWool,0.1\nAfter washing,\nCotton,0.12\nWool,0.14\n");
+    let names: Vec<String> = values(&second).into_iter().map(|v| v.0).collect();
+    assert_eq!(names, ["After washing Cotton", "After washing Wool", "Cotton", "Wool"]);
+    let deviations = read("Fabric,EMT warp (%)\nCotton,5.2\nWool,4.2\nCV (%),\nCotton,5.5\nWool,4.1\n");
+    assert_eq!(values(&deviations).iter().map(|v| v.3).collect::<Vec<_>>(), [5.2, 4.2]);
+    assert_eq!(told(&deviations, "R110").len(), 1);
+    // A word that is not known among the heads of specimens costs nothing but its column.
+    let heads = read(
+        "Parameter,Warp,,,,Weft,,,\n,1,2,3,AV,1,2,3,AV\nB (gf·cm²/cm),0.08,0.082,0.087,0.083,0.05,0.051,0.058,0.053\n",
+    );
+    let found: Vec<_> = values(&heads).into_iter().map(|(.., direction, mean)| (direction, mean)).collect();
+    assert_eq!(found, [(WARP, 0.083), (WEFT, 0.053)]);
+    assert!(heads.results.iter().all(|(_, v)| v.n == 3));
+    for key in ["1 - weft, 2 - warp", "weft = 1, warp = 2", "Direction: 1 = weft; 2 = warp"] {
+        let found = values(&read(&format!("\"{key}\"\nFabric,B-1,B-2\nF1,0.0533,0.0812\n")));
+        assert_eq!(found[0], ("F1".into(), Parameter::B, WARP, 0.0812), "{key}");
+    }
+    // The count of its own table goes before that of a line, which holds for the next table only.
+    let counted = read(
+        "Table 1, n = 3\nFabric,B warp (gf·cm²/cm)\nF1,0.08\n\nTable 2\nFabric,n,G warp (gf/(cm·deg))\nF1,10,0.5\n",
+    );
+    let n: Vec<usize> = counted.results.iter().map(|(_, v)| v.n).collect();
+    assert_eq!(n, [3, 10]);
 }

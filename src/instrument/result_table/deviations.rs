@@ -6,7 +6,7 @@ use super::layout::{Column, Layout};
 use super::row_facts::RowFacts;
 use super::{Datum, Own, Table};
 use crate::finding::{Finding, Place, ReadFact};
-use crate::instrument::caption::{is_name_of_no_values, is_of_no_values};
+use crate::instrument::caption::is_of_no_values;
 use crate::instrument::cell::parts;
 use crate::instrument::context::Context;
 use crate::instrument::dialect::{Statistic, TableColumn};
@@ -104,8 +104,7 @@ impl Table<'_, '_> {
             return Ok(());
         }
         let title = self.header.caption.as_ref().filter(|title| is_of_no_values(title, v));
-        let name = || self.context.sheet.as_ref().filter(|name| is_name_of_no_values(name, v));
-        let Some(title) = title.or_else(name) else { return Ok(()) };
+        let Some(title) = title.or(self.context.sheet_of_no_values.as_ref()) else { return Ok(()) };
         let problem = ReadProblem::NoValuesByTitle { title: title.clone() };
         Err(self.context.error(self.layout.line, 0, problem))
     }

@@ -7,6 +7,7 @@ use super::row_facts::no_direction;
 use super::summaries::summed_up;
 use super::{Datum, Own, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
+use crate::instrument::angle::{angles, direction_of_angle};
 use crate::instrument::contradictions::more_than_direction;
 use crate::instrument::curves::across_in_name;
 use crate::instrument::dialect::{HeaderKey, TableColumn};
@@ -235,7 +236,8 @@ impl Table<'_, '_> {
     /// What a line above the table says that the numbers 1 and 2 are.
     fn key_of_numbers(&self) -> Option<[Direction; 2]> {
         let other = self.header.other.iter().map(|(name, value)| format!("{name} = {value}"));
-        let lines = other.chain(self.header.caption.clone());
+        let stated = self.header.known.get(&HeaderKey::Direction).map(|entry| entry.text.clone());
+        let lines = other.chain(self.header.caption.clone()).chain(stated);
         let mut key: Vec<(usize, Direction)> =
             lines.flat_map(|line| shape::numbered(&line, self.context)).collect();
         key.sort_unstable();
@@ -286,27 +288,12 @@ impl Table<'_, '_> {
     }
 }
 
-/// The direction of an angle to the warp, `0`, `45` and `90` with or without a sign for degrees.
-fn direction_of_angle(text: &str) -> Option<Direction> {
-    let degrees = text.trim_end_matches(['°', ' ']).trim_end_matches("deg").trim_end();
-    match degrees.parse::<f64>().ok()? {
-        0.0 => Some(Direction::Warp),
-        45.0 => Some(Direction::Bias),
-        90.0 => Some(Direction::Weft),
-        _ => None,
-    }
-}
-
 impl Layout {
     /// Columns of directions whose cells are 0 and 90, and perhaps 45.
     pub(super) fn columns_of_angles(&self, region: &Region<'_>) -> BTreeSet<usize> {
         let named = self.labels.iter().filter(|label| label.meta == Some(TableColumn::Direction));
-        let holds_angles = |index: &usize| {
-            let cells = region.rows.iter().filter_map(|row| row.get(*index));
-            let found: Option<BTreeSet<Direction>> = cells.map(direction_of_angle).collect();
-            found.is_some_and(|of| of.contains(&Direction::Warp) && of.contains(&Direction::Weft))
-        };
-        named.map(|label| label.index).filter(holds_angles).collect()
+        let indices = named.map(|label| label.index);
+        indices.filter(|i| angles(region.rows.iter().filter_map(|row| row.get(*i))).is_some()).collect()
     }
 
     /// `Warp yarn` and `Filling direction` over columns: names that are directions, each of another.

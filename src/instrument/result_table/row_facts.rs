@@ -36,7 +36,8 @@ pub(super) struct RowFacts {
     pub(super) names_fabric: bool,
     /// The text of the label, for messages.
     pub(super) label: String,
-    pub(super) n: usize,
+    /// Of how many repeats its values are, where a column says that.
+    pub(super) n: Option<usize>,
     pub(super) unit_at: usize,
     /// Whether the row sums up fabrics: it belongs to none.
     pub(super) summary_of_fabrics: bool,

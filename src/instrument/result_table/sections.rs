@@ -7,7 +7,7 @@ use super::layout::NAME;
 use super::row_facts::Title;
 use crate::instrument::Direction;
 use crate::instrument::context::Context;
-use crate::instrument::dialect::{HeaderKey, TableColumn};
+use crate::instrument::dialect::{HeaderKey, Statistic, TableColumn};
 use crate::instrument::raw::Row;
 use crate::instrument::shape::{self, Region};
 use crate::instrument::words::{folded, normalised};
@@ -55,47 +55,81 @@ impl Table<'_, '_> {
         if found.len() > 1 { found } else { BTreeMap::new() }
     }
 
-    /// Rows of a name alone over rows of specimens, parameters or names that come again: fabrics, or states of one. There are several, and
-    /// the first row is one; a single one may be a remark.
+    /// Rows of a name alone over rows of specimens, parameters or names that come again: fabrics, or states of one. There are several, or
+    /// all names below a single one stood above it; else it may be a remark. Deviations below such a title sum up.
     fn titles_of_fabrics(&self, lines: &[Line<'_>]) -> BTreeMap<usize, Title> {
         let Some(first) = self.layout.labels.first() else { return BTreeMap::new() };
         // Of a row that is a parameter, its direction and unit are parts of what comes again.
         let labels = if self.layout.down { &self.layout.labels[..] } else { std::slice::from_ref(first) };
-        let mut below: Vec<(usize, &str, BTreeSet<String>)> = Vec::new();
+        let mut above = BTreeSet::new();
+        let mut parts: Vec<Part<'_>> = Vec::new();
         for line in lines {
             match line {
-                Line::Text(row, text) if row.get(first.index).is_some() && is_name(text, self.context) => {
-                    below.push((row.line, text, BTreeSet::new()));
-                }
-                Line::Values(row) => match below.last_mut() {
-                    Some((_, _, names)) => {
-                        let cells: Vec<&str> =
-                            labels.iter().filter_map(|label| row.get(label.index)).collect();
-                        names.insert(cells.join("\t"));
+                Line::Text(row, text) if row.get(first.index).is_some() => {
+                    let statistic = self.context.vocabulary.statistic(text);
+                    let sums_up = matches!(statistic, Some(Statistic::Spread | Statistic::Other));
+                    if sums_up || is_name(text, self.context) {
+                        parts.push(Part { line: row.line, text, sums_up, names: BTreeSet::new() });
                     }
-                    None => return BTreeMap::new(),
-                },
+                }
+                Line::Values(row) => {
+                    let cells: Vec<&str> = labels.iter().filter_map(|label| row.get(label.index)).collect();
+                    let names = parts.last_mut().map_or(&mut above, |part| &mut part.names);
+                    names.insert(cells.join("\t"));
+                }
                 _ => {}
             }
         }
+        // Sections of directions end where other titles say so.
+        if !above.is_empty() && lines.iter().any(|line| matches!(line, Line::Direction(_))) {
+            return BTreeMap::new();
+        }
+        let (mut known, mut come_again, mut all_again) = (above.clone(), false, true);
+        let mut out = BTreeMap::new();
+        for part in &parts {
+            come_again |= !part.sums_up && !known.is_disjoint(&part.names);
+            all_again &= part.names.is_subset(&above);
+            if part.sums_up && !part.names.is_empty() && part.names.is_subset(&known) {
+                out.insert(part.line, Title::Summary(part.text.to_string()));
+            }
+            known.extend(part.names.iter().cloned());
+        }
+        parts.retain(|part| !part.sums_up);
+        let enough = if above.is_empty() { parts.len() > 1 } else { all_again && !parts.is_empty() };
         let counts = !self.layout.down && first.meta == Some(TableColumn::Specimen);
-        let come_again = below
-            .iter()
-            .enumerate()
-            .any(|(i, (.., names))| below[..i].iter().any(|(.., before)| !names.is_disjoint(before)));
         let is_named = self.header.known.contains_key(&HeaderKey::Sample) || self.layout.names_fabrics();
         let holds_names = matches!(first.meta, Some(TableColumn::Id | TableColumn::Fabric));
         let title: fn(String) -> Title = match (counts, self.layout.down) {
+            _ if !enough => return out,
             (true, _) => Title::Fabric,
             (_, true) if come_again && !is_named => Title::Fabric,
             (_, down) if come_again && (down || holds_names) => Title::Group,
-            _ => return BTreeMap::new(),
+            _ => return out,
         };
-        if below.len() < 2 {
-            return BTreeMap::new();
+        // A title right above another is that of all up to the next such.
+        let several = parts.iter().filter(|part| part.names.is_empty()).count() > 1;
+        let mut outer = None;
+        for part in &parts {
+            if part.names.is_empty() && several {
+                outer = Some(part.text);
+            }
+            let name = match outer.filter(|outer| *outer != part.text) {
+                Some(outer) => format!("{outer} {}", part.text),
+                None => part.text.to_string(),
+            };
+            out.insert(part.line, title(name));
         }
-        below.iter().map(|(line, text, _)| (*line, title((*text).to_string()))).collect()
+        out
     }
+}
+
+/// A title with the names that stand below it.
+struct Part<'t> {
+    line: usize,
+    text: &'t str,
+    /// Whether it names a statistic.
+    sums_up: bool,
+    names: BTreeSet<String>,
 }
 
 fn is_name(text: &str, context: &Context<'_>) -> bool {
@@ -103,7 +137,9 @@ fn is_name(text: &str, context: &Context<'_>) -> bool {
     // The number in `After 5 washes` counts no specimens.
     let counts = says.index.is_some() && !says.unknown;
     let means_nothing = says.statistic.is_none() && says.direction.is_none() && !counts;
-    means_nothing && text.chars().any(char::is_alphabetic) && text.chars().count() <= NAME
+    // `Bending` over its parameters.
+    let is_test = context.vocabulary.test_exactly(text).is_some();
+    means_nothing && !is_test && text.chars().any(char::is_alphabetic) && text.chars().count() <= NAME
 }
 
 fn line<'r>(row: &'r Row<'r>, context: &Context<'_>) -> Option<Line<'r>> {

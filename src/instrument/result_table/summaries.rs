@@ -176,7 +176,10 @@ fn statistic_of_row(name: &str, below_mean: bool, v: Vocabulary<'_>) -> Option<S
         letters.chars().all(char::is_alphabetic) && letters.chars().count() <= LONGEST_ABBREVIATION
     });
     let deviation = below_mean && (v.table_column(name) == Some(TableColumn::Sd) || is_relative);
-    v.statistic(name).or(deviation.then_some(Statistic::Spread))
+    // Shoes and double cloths have an upper and a lower.
+    let is_limit =
+        below_mean && ["lower", "upper", "df"].iter().any(|word| name.trim().eq_ignore_ascii_case(word));
+    v.statistic(name).or(deviation.then_some(Statistic::Spread)).or(is_limit.then_some(Statistic::Other))
 }
 
 /// The name, the statistic and its word in `F1 mean`, `F1 (SD)` and `mean of F1`.
