@@ -15,8 +15,8 @@ pub(super) fn direction_of_angle(text: &str) -> Option<Direction> {
     }
 }
 
-/// The directions of the entries of a column, where all are angles, 0 and 90 among them.
-pub(super) fn angles<'e>(entries: impl Iterator<Item = &'e str>) -> Option<BTreeSet<Direction>> {
+/// Whether the entries of a column are angles, 0 and 90 among them.
+pub(super) fn are_angles<'e>(entries: impl Iterator<Item = &'e str>) -> bool {
     let found: Option<BTreeSet<Direction>> = entries.map(direction_of_angle).collect();
-    found.filter(|of| of.contains(&Direction::Warp) && of.contains(&Direction::Weft))
+    found.is_some_and(|of| of.contains(&Direction::Warp) && of.contains(&Direction::Weft))
 }

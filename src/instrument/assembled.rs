@@ -3,9 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use super::content::{FileContent, ReadSettings};
 use super::dialect::HeaderKey;
 use super::means;
-use super::read::{FileContent, ReadSettings, parse};
+use super::read::parse;
 use super::samples;
 use super::states::told_apart;
 use super::vocabulary::Vocabulary;

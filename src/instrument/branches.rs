@@ -48,9 +48,9 @@ pub(super) fn join(
         let branch = records[unloading].clone();
         let record = &mut records[loading];
         append(record, &branch);
-        record.sample =
-            record.sample.take().map(|sample| split(&sample, vocabulary).map_or(sample, |(rest, _)| rest));
+        record.sample = record.sample.take().map(|sample| without_branch(&sample, vocabulary));
         record.sample.take_if(|sample| sample.is_empty());
+        names[loading] = without_branch(&names[loading], vocabulary);
         let fact = ReadFact::BranchesJoined { parts, record: record.record_name() };
         found.push(Finding::new(fact).at(Place::at(path, record.lines.first().copied().unwrap_or(0), 0)));
         gone.push(unloading);

@@ -37,8 +37,9 @@ pub(super) fn parts(cell: &str, decimal: char) -> Parts<'_> {
 
 /// A cell without the number of repeats behind it, and that.
 fn without_repeats(cell: &str) -> Option<(&str, usize)> {
+    let sign = cell.rfind('=')?;
     let text = cell.trim_end_matches([')', ']', ' ']);
-    let at = text.rfind(['n', 'N']).filter(|at| text[*at..].contains('='))?;
+    let at = text[..sign.min(text.len())].rfind(['n', 'N'])?;
     let bare = text[..at].trim_end_matches(['(', '[', ',', ';', ' ']);
     let is_apart = text[bare.len()..at].contains(['(', '[', ',', ';']) || bare.ends_with([')', ']', '%']);
     Some((bare, repeats(&text[at..])?)).filter(|_| is_apart)

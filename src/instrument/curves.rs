@@ -2,10 +2,11 @@
 
 use super::axis::Axes;
 use super::column_values::Samples;
+use super::content::FileContent;
 use super::context::Context;
 use super::dialect::{HeaderKey, Role};
 use super::error::{ReadError, ReadProblem};
-use super::header_value::{positive, quantity_by, quantity_of};
+use super::header_value::{positive, quantity, quantity_by, quantity_of};
 use super::inference;
 use super::label::SPECIMENS;
 use super::layout::{Header, Pair};
@@ -14,13 +15,70 @@ use super::raw::Row;
 use super::specimen_size::{gauge, length_of, size};
 use super::unit_text;
 use super::words::folded;
-use super::{Conditions, Direction, Measurement, Shape, Source, Test};
-use crate::finding::{Finding, Place, ReadFact};
-use crate::quantity::{Curve, Force, LineForce};
+use super::{Conditions, Direction, Measurement, Parameter, ResultValue, Shape, Source, Test};
+use crate::finding::{Fact, Finding, Place, ReadFact};
+use crate::kes::ValueStatus;
+use crate::quantity::{ArealDensity, Curve, Force, LineForce};
+
+/// Reads the curves of a record into `content`.
+///
+/// # Errors
+/// Those of its columns and header lines; R002 where no column has a value.
+pub(super) fn add(
+    pairs: &[Pair],
+    rows: &[&Row<'_>],
+    ends_file: bool,
+    context: &Context<'_>,
+    content: &mut FileContent,
+) -> Result<(), ReadError> {
+    let before = content.measurements.len();
+    for pair in pairs {
+        let read = measurement(pair, rows, ends_file, context, &mut content.inference)?;
+        if let Some((measurement, findings)) = read {
+            content.measurements.push(measurement);
+            // What was assumed for one column was assumed for all: that is said once.
+            for finding in findings {
+                let assumed = matches!(finding.fact, Fact::Reading(ReadFact::AssumedDimension { .. }));
+                if !(assumed && content.findings.iter().any(|k| k.fact == finding.fact)) {
+                    content.findings.push(finding);
+                }
+            }
+        }
+        weight(&pair.header, context, content)?;
+    }
+    if content.measurements.len() == before {
+        let (line, column) = pairs.first().map_or((0, 0), |p| (p.x.line, p.x.column));
+        return Err(context.error(line, column, ReadProblem::Empty));
+    }
+    Ok(())
+}
+
+/// An areal density in the header of a curve file is a result value of its own.
+fn weight(header: &Header, context: &Context<'_>, content: &mut FileContent) -> Result<(), ReadError> {
+    let Some(entry) = header.known.get(&HeaderKey::Weight) else { return Ok(()) };
+    let value: ArealDensity = quantity(entry, "weight", "mg/cm²", context)?;
+    let known = |(_, v): &(Option<String>, ResultValue)| v.parameter == Parameter::W && v.mean == value.si();
+    if !content.results.iter().any(known) {
+        let place = Place::at(context.path, entry.line, entry.column);
+        let result = ResultValue {
+            parameter: Parameter::W,
+            direction: None,
+            mean: value.si(),
+            sd: None,
+            n: 1,
+            values: Vec::new(),
+            lines: Vec::new(),
+            status: ValueStatus::Measured,
+            place,
+        };
+        content.results.push((None, result));
+    }
+    Ok(())
+}
 
 /// The measurement of one column pair, with what was noticed on the way; `None` if the pair holds
 /// no value at all (an empty column block).
-pub(super) fn measurement(
+fn measurement(
     pair: &Pair,
     rows: &[&Row<'_>],
     ends_file: bool,

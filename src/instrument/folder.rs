@@ -4,11 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::assembled::{AboutGroup, Group, fabrics};
+use super::content::ReadSettings;
 use super::error::{ReadError, ReadProblem};
 use super::fabric_file::{DRAPE_FILE, read_dialect, read_fabric_file};
 use super::file_name::{ABOUT, EXTENSIONS};
 use super::own_results::{JOURNAL, MANIFEST, OwnResults};
-use super::read::{ReadSettings, read};
+use super::read::read;
 use super::vocabulary::Vocabulary;
 use super::words::normalised;
 use super::{FabricInfo, FabricInput};

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::angle::{angles, direction_of_angle};
+use super::angle::{are_angles, direction_of_angle};
 use super::context::Context;
 use super::dialect::{HeaderKey, TableColumn};
 use super::layout::{Column, Entry, Pair};
@@ -27,7 +27,7 @@ pub(super) struct KeyColumn {
 /// The records that rows hold, each with the columns of its curves.
 pub(super) type Records<'t> = Vec<(Vec<Pair>, Vec<&'t Row<'t>>)>;
 
-/// The columns of keys beside those of curves: every row has one of few entries, and no two columns say the same.
+/// The columns of keys beside those of curves: every row has one of few entries.
 pub(super) fn columns(
     heading: &Row<'_>,
     curves: &[Column],
@@ -42,10 +42,9 @@ pub(super) fn columns(
         let Some(key) = key_of(&cell.text, context) else { continue };
         let entries: Option<BTreeSet<&str>> = rows.iter().map(|row| row.get(index)).collect();
         let Some(entries) = entries.filter(|entries| entries.len() * ROWS <= rows.len()) else { continue };
-        let are_angles = key == HeaderKey::Direction && angles(entries.iter().copied()).is_some();
+        let are_angles = key == HeaderKey::Direction && are_angles(entries.iter().copied());
         let fits = are_angles || entries.iter().all(|text| can_be(key, text, context));
-        let may_be_parts = key != HeaderKey::Direction;
-        if fits && !(may_be_parts && parts_of_one(index, curves, rows, context)) {
+        if fits && (key == HeaderKey::Direction || !parts_of_one(index, curves, rows, context)) {
             found.push((KeyColumn { index, key, are_angles, is_named: true }, entries));
         }
     }

@@ -5,20 +5,20 @@
 
 use std::collections::BTreeMap;
 
-use super::Direction;
 use super::caption::is_number_of_table;
 use super::column_name::ColumnName;
 use super::context::Context;
 use super::dialect::{HeaderKey, Role};
 use super::error::{ReadError, ReadProblem};
-use super::facets::repeats;
 use super::keyed_rows::{self, KeyColumn};
 use super::label::Label;
+use super::numbered;
 use super::pairs;
 use super::raw::Row;
 use super::sample_cells::{begins_with_overflow, is_text, is_without_values};
 use super::shape::{self, Region, has_numbers, is_numeric};
 use super::sniff::{Number, number};
+use super::stray;
 use super::suggest;
 use super::unit_text::{is_volt, split_unit, unbracketed, unit};
 use super::volts;
@@ -140,19 +140,19 @@ pub(super) fn blocks<'t>(
             let (block, part) = scanner.curves(columns)?;
             scanner.add(&mut blocks, block, part);
         } else if is_numeric(row, context.decimal) {
-            return Err(unknown_layout(context, row, &words));
+            return Err(suggest::unknown_layout(context, row, &words));
         } else {
             if words.len() > 1 && has_numbers(row, context.decimal) {
-                unread.get_or_insert_with(|| unknown_layout(context, row, &words));
+                unread.get_or_insert_with(|| suggest::unknown_layout(context, row, &words));
             }
             if let Some(Block::Table { region, .. }) = blocks.last()
                 && shape::continues(row, region, context)
             {
                 behind.push(row.line);
             }
-            match shape::value_of_header(row, context) {
+            match stray::value_of_header(row, context) {
                 Some(name) => stray.push((row.line, name)),
-                None => above.extend(shape::unknown_number(row, context).map(|name| (row.line, name))),
+                None => above.extend(stray::unknown_number(row, context).map(|name| (row.line, name))),
             }
             words = row.filled().map(|(_, c)| folded(&c.text).into_owned()).collect();
             scanner.note_line_between(row);
@@ -161,53 +161,15 @@ pub(super) fn blocks<'t>(
         }
     }
     if blocks.is_empty() {
-        return Err(unread.unwrap_or_else(|| not_read(rows, context)));
+        return Err(unread.unwrap_or_else(|| suggest::not_read(rows, context)));
     }
     let has_table = blocks.iter().any(|block| matches!(block, Block::Table { .. }));
-    scanner.findings.extend(Some(stray).filter(|_| has_table).and_then(|stray| shape::apart(stray, context)));
+    scanner.findings.extend(Some(stray).filter(|_| has_table).and_then(|stray| stray::apart(stray, context)));
     if let Some(line) = behind.first() {
         let place = Place::at(context.path, *line, 0);
         scanner.findings.push(Finding::new(ReadFact::RowsNotRead { lines: behind }).at(place));
     }
     Ok((blocks, scanner.findings))
-}
-
-/// What is wrong with a file of which no row was taken: R006 where a row has a number, R002 where none has.
-fn not_read(rows: &[Row<'_>], context: &Context<'_>) -> ReadError {
-    let Some(at) = rows.iter().position(|row| has_value(row, context)) else {
-        return context.error(0, 0, ReadProblem::Empty);
-    };
-    let above = rows[..at].iter().rfind(|row| !row.is_blank()).unwrap_or(&rows[at]);
-    let words: Vec<String> = above.filled().map(|(_, c)| folded(&c.text).into_owned()).collect();
-    let found = format!(
-        "{:?} is over the numbers; a column of values is named by a symbol and its unit, B (gf·cm²/cm), beside a column of names or directions",
-        words.join(" | ")
-    );
-    context.error(above.line, above.column(0), ReadProblem::UnknownLayout { found })
-}
-
-/// Whether a cell is a number, or begins with one: `0.0812/0.0533`.
-fn has_value(row: &Row<'_>, context: &Context<'_>) -> bool {
-    row.filled().any(|(_, cell)| {
-        let begins =
-            cell.text.starts_with(|c: char| c.is_ascii_digit()) && cell.text.contains(context.decimal);
-        begins || shape::is_value(&cell.text, context)
-    })
-}
-
-fn unknown_layout(context: &Context<'_>, row: &Row<'_>, words: &[String]) -> ReadError {
-    let (problem, inference) = suggest::unknown_words(words, context.vocabulary);
-    let mut error = context.error(row.line, row.column(0), problem);
-    error.about.inference = inference;
-    error
-}
-
-/// Words that may be dimensions are directions where both stand side by side: `length K`, `length M`, `width K`, `width M`.
-fn directions_of_dimensions(columns: &mut [Column]) {
-    let named = |direction| columns.iter().any(|c| c.says.dimension == Some(direction));
-    if named(Direction::Warp) && named(Direction::Weft) {
-        columns.iter_mut().for_each(|c| c.says.direction = c.says.direction.or(c.says.dimension));
-    }
 }
 
 pub(super) struct Scanner<'t, 'a> {
@@ -239,7 +201,7 @@ impl<'t> Scanner<'t, '_> {
             Some(Column { index, role, name, unit, line: row.line, column: cell.column, says })
         };
         let mut columns: Vec<Column> = pairs::along_sweep(row.filled().filter_map(column).collect());
-        directions_of_dimensions(&mut columns);
+        pairs::directions_of_dimensions(&mut columns);
         let sweep = columns
             .iter()
             .any(|c| c.role == Role::Position && (c.unit.is_some() || self.has_unit_below(row, c.index)));
@@ -472,11 +434,7 @@ impl<'t> Scanner<'t, '_> {
     }
 
     fn keep(&mut self, name: &str, mut values: Vec<(String, usize)>, line: usize) {
-        let whole = values.iter().fold(name.to_string(), |text, (value, _)| match value.contains('=') {
-            true => format!("{text}, {value}"),
-            false => format!("{text} = {value}"),
-        });
-        self.header.repeats = whole.split([',', ';', '(', ')']).find_map(repeats).or(self.header.repeats);
+        self.header.repeats = numbered::repeats(name, &values).or(self.header.repeats);
         let name = name.trim_start_matches('#');
         let (plain, own_unit) = split_unit(name);
         let plain = bare(&plain);

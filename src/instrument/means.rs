@@ -1,6 +1,6 @@
 //! Records of means: a sheet, a file or a line over a record that is called after a mean, beside those of single specimens.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::Measurement;
@@ -12,30 +12,30 @@ use super::statistic;
 use super::vocabulary::Vocabulary;
 use crate::finding::Finding;
 
-/// Leaves out the records whose name is that of a mean where others of their test and direction remain; each record has its name.
+/// Leaves out the records whose name is that of a mean where others of their test and direction remain; each record has its name, which goes
+/// with it.
 pub(super) fn leave_out(
     records: &mut Vec<Measurement>,
-    names: &[String],
+    names: &mut Vec<String>,
     what: &str,
     path: &Path,
     vocabulary: Vocabulary<'_>,
 ) -> Option<Finding> {
     let is_mean: Vec<bool> = names.iter().map(|name| names_mean(name, vocabulary)).collect();
-    let mut single = BTreeMap::new();
-    for (record, _) in records.iter().zip(&is_mean).filter(|(_, is_mean)| !**is_mean) {
-        *single.entry((record.test, record.direction)).or_insert(0) += 1;
-    }
+    let single: BTreeSet<_> = records
+        .iter()
+        .zip(&is_mean)
+        .filter(|(_, is_mean)| !**is_mean)
+        .map(|(record, _)| (record.test, record.direction))
+        .collect();
     let mut left_out: Vec<(usize, String)> = Vec::new();
-    let mut at = 0;
-    records.retain(|record| {
-        let beside = single.contains_key(&(record.test, record.direction));
-        let leaves = is_mean.get(at).is_some_and(|is_mean| *is_mean && beside);
-        if leaves {
-            left_out.push((record.lines.first().copied().unwrap_or_default(), names[at].clone()));
+    for at in (0..records.len().min(names.len())).rev() {
+        if is_mean[at] && single.contains(&(records[at].test, records[at].direction)) {
+            let record = records.remove(at);
+            left_out.push((record.lines.first().copied().unwrap_or_default(), names.remove(at)));
         }
-        at += 1;
-        !leaves
-    });
+    }
+    left_out.reverse();
     statistic::finding(what, &left_out, path)
 }
 
@@ -47,9 +47,9 @@ pub(super) fn leave_out_files(
 ) -> Vec<Finding> {
     let mut files: Vec<String> = records.iter().map(stem).collect();
     let joined = branches::join(records, &mut files, path, vocabulary);
-    let of_files = leave_out(records, &files, "files", path, vocabulary);
-    let captions: Vec<String> = records.iter().map(|m| m.caption.clone().unwrap_or_default()).collect();
-    let of_captions = leave_out(records, &captions, "curves", path, vocabulary);
+    let of_files = leave_out(records, &mut files, "files", path, vocabulary);
+    let mut captions: Vec<String> = records.iter().map(|m| m.caption.clone().unwrap_or_default()).collect();
+    let of_captions = leave_out(records, &mut captions, "curves", path, vocabulary);
     joined.into_iter().chain(of_files).chain(of_captions).collect()
 }
 

@@ -21,6 +21,7 @@ mod column_name;
 mod column_values;
 mod condition;
 mod conditions;
+mod content;
 mod context;
 mod continued;
 mod contradictions;
@@ -47,6 +48,7 @@ mod marks;
 mod means;
 mod measurement;
 mod number_format;
+mod numbered;
 mod ordinates;
 mod over_columns;
 mod own_results;
@@ -68,6 +70,7 @@ mod specimen_size;
 mod states;
 mod statistic;
 mod status_word;
+mod stray;
 mod suggest;
 mod unit_text;
 mod unpacked;
@@ -81,6 +84,7 @@ mod workbook;
 pub use crate::kes::{Direction, Parameter, Shape, Test};
 pub use assembled::parse_fabrics;
 pub use conditions::{StatedConditions, TestConditions, standard_conditions};
+pub use content::{FileContent, ReadSettings};
 pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, HeaderKey, Role, Statistic, TableColumn, dialects};
 pub use error::{About, ReadError, ReadProblem};
 #[cfg(test)]
@@ -93,5 +97,5 @@ pub use measurement::{
     StatedStiffness,
 };
 pub use own_results::{JOURNAL, MANIFEST};
-pub use read::{FileContent, ReadSettings, parse, read};
+pub use read::{parse, read};
 pub use unpacked::unpacked;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::Direction;
 use super::dialect::{BranchColumn, HeaderKey, Role, Statistic};
 use super::error::{ReadError, ReadProblem};
 use super::label::Label;
@@ -219,5 +220,12 @@ impl Scanner<'_, '_> {
         let left_out: Vec<(usize, String)> = pairs.iter().filter_map(word).collect();
         self.findings.extend(statistic::finding("curves", &left_out, self.context.path));
         pairs.retain(|p| word(p).is_none());
+    }
+}
+/// Words that may be dimensions are directions where both stand side by side: `length K`, `length M`, `width K`, `width M`.
+pub(super) fn directions_of_dimensions(columns: &mut [Column]) {
+    let named = |direction| columns.iter().any(|c| c.says.dimension == Some(direction));
+    if named(Direction::Warp) && named(Direction::Weft) {
+        columns.iter_mut().for_each(|c| c.says.direction = c.says.direction.or(c.says.dimension));
     }
 }

@@ -5,70 +5,29 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
+use super::Source;
 use super::blanks;
 use super::branches;
 use super::browzwear;
 use super::caption;
-use super::conditions::StatedConditions;
+use super::content::{FileContent, ReadSettings};
 use super::context::Context;
 use super::curves;
-use super::dialect::{Dialect, HeaderKey};
+use super::dialect::Dialect;
 use super::error::{ReadError, ReadProblem};
-use super::fab::{self, FabFile};
-use super::header_value;
+use super::fab::{self};
 use super::keyed_rows;
 use super::label::Label;
-use super::layout::{self, Block, Header};
+use super::layout::{self, Block};
 use super::raw::{self, Row};
-use super::result_table::{self, Values};
+use super::result_table::{self};
 use super::seen::Seen;
 use super::sniff::{Sniffed, sniff, sniff_lines};
 use super::vocabulary::Vocabulary;
 use super::workbook::{self, Archive};
-use super::{Measurement, Parameter, ResultValue, Source, StatedStiffness};
 use super::{cell_units, code_page, letters, limits, lines, means, row_names, samples, web_page};
-use crate::finding::{Fact, Finding, Place, ReadFact};
-use crate::kes::ValueStatus;
+use crate::finding::{Finding, Place, ReadFact};
 use crate::platform;
-use crate::quantity::ArealDensity;
-
-/// What a reader may be told beforehand. The default infers everything and assumes no unit.
-#[derive(Clone, Debug, Default)]
-pub struct ReadSettings {
-    /// Dialects of the user, tried first.
-    pub dialects: Vec<Dialect>,
-    /// Cell delimiter, instead of the inferred one.
-    pub delimiter: Option<char>,
-    /// Decimal mark, instead of the inferred one.
-    pub decimal: Option<char>,
-    /// Takes numbers without a unit as being in the customary KES unit, instead of refusing them.
-    pub kes_units: bool,
-    /// Conditions that files leave out.
-    pub conditions: StatedConditions,
-}
-
-/// What one file holds.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FileContent {
-    /// Curves, in file order.
-    pub measurements: Vec<Measurement>,
-    /// Values of result tables, each with the fabric that the table names.
-    pub results: Values,
-    /// Tensile stiffnesses of result tables, each with the fabric that the table names.
-    pub stiffnesses: Vec<(Option<String>, StatedStiffness)>,
-    /// Whether the curves stand below one another in rows that name their fabrics: [`Measurement::sample`] is one then.
-    pub rows_name_fabrics: bool,
-    /// A FAB record.
-    pub fab: Option<FabFile>,
-    /// What a reader of the data must know.
-    pub findings: Vec<Finding>,
-    /// Fabrics of a result table that cannot be read, an error each; the others are there.
-    pub failures: Vec<ReadError>,
-    /// The file.
-    pub source: Source,
-    /// What was inferred and why, for people (`kesf check -v`).
-    pub inference: Vec<String>,
-}
 
 /// Reads a file.
 ///
@@ -265,7 +224,7 @@ fn sheets(
     let names: Vec<&str> = sheets.iter().map(|sheet| sheet.name.as_str()).collect();
     let letters = letters::in_names(&names, Vocabulary::new(&settings.dialects));
     let several = sheets.len() > 1;
-    let (mut with_curves, mut unread, mut of_letters) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut unread, mut of_letters) = (Vec::new(), Vec::new());
     let (mut of_sheets, mut tables) = (Vec::<String>::new(), Vec::new());
     for sheet in &sheets {
         // The place of a cell needs its sheet: `book.xlsx[sheet]:line:column`.
@@ -297,10 +256,6 @@ fn sheets(
         if is_used && letter.is_some() {
             of_letters.push(sheet.name.clone());
         }
-        // A letter of a direction names no sample.
-        if content.measurements.len() > curves && letter.is_none() {
-            with_curves.push(sheet.name.as_str());
-        }
     }
     if !of_letters.is_empty() {
         let fact = ReadFact::DirectionsFromLetters { texts: of_letters };
@@ -314,22 +269,21 @@ fn sheets(
     beside_curves(tables, content)?;
     let vocabulary = Vocabulary::new(&settings.dialects);
     let joined = branches::join(&mut content.measurements, &mut of_sheets, path, vocabulary);
-    if !joined.is_empty() {
-        // A record of two sheets is called without the words for its branches.
-        let is_joined = |name: &&str| of_sheets.iter().any(|sheet| sheet == name);
-        with_curves.retain(is_joined);
-        let others = of_sheets.iter().map(String::as_str).filter(|name| !letters.contains_key(name));
-        with_curves.extend(others.collect::<BTreeSet<_>>());
-        with_curves.sort_unstable();
-        with_curves.dedup();
-    }
     content.findings.extend(joined);
-    let means = means::leave_out(&mut content.measurements, &of_sheets, "sheets", path, vocabulary);
-    if let Some(means) = means {
-        with_curves.retain(|name| !means::names_mean(name, vocabulary));
-        content.findings.push(means);
-    }
-    let samples = samples::of_sheets(&with_curves, vocabulary);
+    content.findings.extend(means::leave_out(
+        &mut content.measurements,
+        &mut of_sheets,
+        "sheets",
+        path,
+        vocabulary,
+    ));
+    // A letter of a direction names no sample, and no more does a mean.
+    let names: BTreeSet<&str> = of_sheets
+        .iter()
+        .map(String::as_str)
+        .filter(|name| !letters.contains_key(name) && !means::names_mean(name, vocabulary))
+        .collect();
+    let samples = samples::of_sheets(&names.into_iter().collect::<Vec<_>>(), vocabulary);
     if samples.len() > 1 {
         let mut names = of_sheets.iter();
         let records = samples::averaged(&content.measurements, |_| names.next().cloned().unwrap_or_default());
@@ -369,7 +323,7 @@ fn archive(
     }
     let vocabulary = Vocabulary::new(&settings.dialects);
     content.findings.extend(branches::join(&mut content.measurements, &mut of_files, path, vocabulary));
-    let means = means::leave_out(&mut content.measurements, &of_files, "files", path, vocabulary);
+    let means = means::leave_out(&mut content.measurements, &mut of_files, "files", path, vocabulary);
     content.findings.extend(means);
     if content.measurements.is_empty() && content.results.is_empty() && content.fab.is_none() {
         return Err(content.failures.drain(..).next().unwrap_or_else(|| error(ReadProblem::Empty)));
@@ -406,7 +360,7 @@ fn table(
                 let records = keyed_rows::records(pairs, rows, &keys);
                 let of_block = records.len();
                 for (k, (pairs, rows)) in records.into_iter().enumerate() {
-                    curves_of(&pairs, &rows, ends_file && k + 1 == of_block, context, content)?;
+                    curves::add(&pairs, &rows, ends_file && k + 1 == of_block, context, content)?;
                 }
             }
             Block::Table { header, region } => {
@@ -426,59 +380,6 @@ fn table(
     content.inference.retain(|line| seen.insert(line.clone()));
     content.findings.dedup();
     Ok(unread)
-}
-
-/// Reads the curves of a block into `content`.
-fn curves_of(
-    pairs: &[layout::Pair],
-    rows: &[&Row<'_>],
-    ends_file: bool,
-    context: &Context<'_>,
-    content: &mut FileContent,
-) -> Result<(), ReadError> {
-    let before = content.measurements.len();
-    for pair in pairs {
-        let read = curves::measurement(pair, rows, ends_file, context, &mut content.inference)?;
-        if let Some((measurement, findings)) = read {
-            content.measurements.push(measurement);
-            // What was assumed for one column was assumed for all: that is said once.
-            for finding in findings {
-                let assumed = matches!(finding.fact, Fact::Reading(ReadFact::AssumedDimension { .. }));
-                if !(assumed && content.findings.iter().any(|k| k.fact == finding.fact)) {
-                    content.findings.push(finding);
-                }
-            }
-        }
-        weight(&pair.header, context, content)?;
-    }
-    if content.measurements.len() == before {
-        let (line, column) = pairs.first().map_or((0, 0), |p| (p.x.line, p.x.column));
-        return Err(context.error(line, column, ReadProblem::Empty));
-    }
-    Ok(())
-}
-
-/// An areal density in the header of a curve file is a result value of its own.
-fn weight(header: &Header, context: &Context<'_>, content: &mut FileContent) -> Result<(), ReadError> {
-    let Some(entry) = header.known.get(&HeaderKey::Weight) else { return Ok(()) };
-    let value: ArealDensity = header_value::quantity(entry, "weight", "mg/cm²", context)?;
-    let known = |(_, v): &(Option<String>, ResultValue)| v.parameter == Parameter::W && v.mean == value.si();
-    if !content.results.iter().any(known) {
-        let place = Place::at(context.path, entry.line, entry.column);
-        let result = ResultValue {
-            parameter: Parameter::W,
-            direction: None,
-            mean: value.si(),
-            sd: None,
-            n: 1,
-            values: Vec::new(),
-            lines: Vec::new(),
-            status: ValueStatus::Measured,
-            place,
-        };
-        content.results.push((None, result));
-    }
-    Ok(())
 }
 
 /// The dialect that knows most words of the rows that are not numbers.

@@ -7,14 +7,13 @@ use super::context::Context;
 use super::dialect::{Role, Statistic, TableColumn};
 use super::facets::{Facets, repeats};
 use super::letters;
-use super::lines;
+use super::numbered;
 use super::raw::{Cell, Row};
 pub(super) use super::section::section;
 use super::sniff::{Number, number};
 use super::unit_text::{split_unit, unbracketed, unit};
 use super::value::{Printed, is_gap};
 use super::{Direction, Parameter};
-use crate::finding::{Finding, Place, ReadFact};
 
 /// The most rows of heads.
 const HEADS: usize = 5;
@@ -56,7 +55,7 @@ pub(super) fn is_value(cell: &str, context: &Context<'_>) -> bool {
 }
 
 /// Whether a cell may hold the value that a label names: with a unit of its own, one of the right kind or none that is known.
-fn is_value_of(cell: &str, label: &Facets, context: &Context<'_>) -> bool {
+pub(super) fn is_value_of(cell: &str, label: &Facets, context: &Context<'_>) -> bool {
     let parts = parts(cell, context.decimal);
     let own = parts.unit.as_deref().and_then(|text| unit(text).ok());
     let expected = label.parameter.and_then(|p| unit(p.kes_unit()).ok());
@@ -105,7 +104,7 @@ fn kind(row: &Row<'_>, context: &Context<'_>) -> Kind {
     if let Some(direction) = section(row, context) {
         return Kind::Section(direction);
     }
-    if states_name(row, context) || is_key_of_numbers(row, context) {
+    if states_name(row, context) || numbered::is_key(row, context) {
         return Kind::Other;
     }
     let (mut words, mut numbers, mut units, mut unknown, mut dashes) = (0, 0, 0, 0, 0);
@@ -139,25 +138,19 @@ fn kind(row: &Row<'_>, context: &Context<'_>) -> Kind {
     match (words, numbers, units, unknown) {
         (0, 0, 1.., 0) => Kind::Units,
         // `1 2 3 AVE` over columns.
-        (1.., 2.., 0, _) if dashes == 0 && words + unknown <= 6 && counts(row, context) => Kind::Head,
+        (1.., 2.., 0, _) if dashes == 0 && words + unknown <= 6 && numbered::counts(row, context) => {
+            Kind::Head
+        }
         // `, 1, 2, 3, AV`: a word that is not known among them.
-        (0, 2.., 0, 1..) if row.get(0).is_none() && dashes == 0 && unknown <= 6 && counts(row, context) => {
+        (0, 2.., 0, 1..)
+            if row.get(0).is_none() && dashes == 0 && unknown <= 6 && numbered::counts(row, context) =>
+        {
             Kind::Head
         }
         (_, 1.., ..) => Kind::Values,
         (1.., 0, ..) => Kind::Head,
         _ => Kind::Other,
     }
-}
-
-/// Whether the numbers of a row are 1, 2, 3, once or again and again: those of specimens below one direction after the other.
-fn counts(row: &Row<'_>, context: &Context<'_>) -> bool {
-    let cells = row.filled().filter(|(_, cell)| is_value(&cell.text, context));
-    let numbers: Vec<Option<usize>> = cells.map(|(_, cell)| cell.text.trim().parse().ok()).collect();
-    let again = numbers.iter().skip(1).position(|n| *n == Some(1)).map_or(numbers.len(), |at| at + 1);
-    again > 1
-        && numbers.len().is_multiple_of(again)
-        && numbers.iter().enumerate().all(|(i, n)| *n == Some(i % again + 1))
 }
 
 /// Whether a row of words is the heading of a result table by its symbols.
@@ -197,45 +190,6 @@ fn states_name(row: &Row<'_>, context: &Context<'_>) -> bool {
     }
 }
 
-/// The directions that a key gives to numbers behind symbols: `1 = weft, 2 = warp`.
-pub(super) fn numbered(text: &str, context: &Context<'_>) -> Vec<(usize, Direction)> {
-    let (mut tokens, mut pairs) = (Vec::new(), Vec::new());
-    for word in text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()) {
-        match (word, context.vocabulary.direction_exactly(word)) {
-            ("1", _) => tokens.push(Err(1)),
-            ("2", _) => tokens.push(Err(2)),
-            (_, Some(direction)) if word.chars().count() > 1 => tokens.push(Ok(direction)),
-            _ => {}
-        }
-    }
-    for pair in tokens.chunks(2) {
-        match pair {
-            [Err(number), Ok(direction)] => pairs.push((*number, *direction)),
-            // `weft = 1`; `Weft 1` is a specimen.
-            [Ok(direction), Err(number)] if text.contains('=') => pairs.push((*number, *direction)),
-            _ => return Vec::new(),
-        }
-    }
-    pairs
-}
-
-/// Whether a row is such a key, and heads no columns.
-fn is_key_of_numbers(row: &Row<'_>, context: &Context<'_>) -> bool {
-    row.get(0).is_some() && row.filled().all(|(_, cell)| !numbered(&cell.text, context).is_empty())
-}
-
-/// Whether a row numbers columns: nothing in its first cell, then 1, 2 and so on, and perhaps from 1 again, with statistics between.
-fn counts_columns(row: &Row<'_>, context: &Context<'_>) -> bool {
-    let counted = row.filled().filter(|(_, c)| context.vocabulary.statistic(&c.text).is_none());
-    let numbers: Option<Vec<usize>> = counted.map(|(_, c)| c.text.trim().parse().ok()).collect();
-    let begins_later = row.filled().next().is_some_and(|(i, _)| i > 0);
-    let Some(numbers) = numbers.filter(|n| begins_later && n.first() == Some(&1) && n.get(1) == Some(&2))
-    else {
-        return false;
-    };
-    numbers.windows(2).all(|pair| pair[1] == pair[0] + 1 || pair[1] == 1)
-}
-
 /// The facets of every cell of a row.
 pub(super) fn facets(row: &Row<'_>, context: &Context<'_>) -> Vec<Facets> {
     let mut out: Vec<Facets> = row.cells.iter().map(|c| context.facets(&c.text)).collect();
@@ -269,37 +223,6 @@ fn named_columns(heads: &[&Row<'_>], context: &Context<'_>) -> BTreeSet<usize> {
 fn is_labelled(row: &Row<'_>, named: &BTreeSet<usize>, context: &Context<'_>) -> bool {
     let label = row_label(row, context).filter(|(at, f)| f.statistic.is_none() && !named.contains(at));
     label.is_some_and(|(_, f)| row.filled().any(|(_, c)| is_value_of(&c.text, &f, context)))
-}
-
-/// What is told of values among the header lines of a table, each with its line.
-pub(super) fn apart(values: Vec<(usize, String)>, context: &Context<'_>) -> Option<Finding> {
-    let place = Place::at(context.path, values.first()?.0, 0);
-    let names = values.into_iter().map(|(_, name)| name).collect();
-    let reason = "it stands apart from the table, as a header line does: put it into a row of the table";
-    Some(Finding::new(ReadFact::Unusable { names, reason: Some(reason.to_string()) }).at(place))
-}
-
-/// The label of a header line that names a parameter and states a value of it. The weight and the thickness of the sample have
-/// keys of their own.
-pub(super) fn value_of_header(row: &Row<'_>, context: &Context<'_>) -> Option<String> {
-    if let Some(name) = lines::name(row, context.decimal, context.vocabulary) {
-        return Some(name).filter(|name| context.vocabulary.key(name).is_none());
-    }
-    let (at, f) = row_label(row, context).filter(|(_, f)| f.statistic.is_none())?;
-    let label = row.get(at)?;
-    let is_key = context.vocabulary.key(&split_unit(label).0).is_some();
-    let has_value = row.filled().any(|(i, c)| i > at && is_value_of(&c.text, &f, context));
-    (has_value && !is_key).then(|| label.to_string())
-}
-
-/// The label of a header line that no dialect knows, with a number behind it.
-pub(super) fn unknown_number(row: &Row<'_>, context: &Context<'_>) -> Option<String> {
-    let mut filled = row.filled();
-    let (_, label) = filled.next()?;
-    let (_, value) = filled.next()?;
-    let is_number = matches!(number(&value.text, context.decimal), Number::Value(_));
-    let is_known = context.vocabulary.key(&split_unit(&label.text).0).is_some();
-    (is_number && !is_known && !label.text.contains([':', '='])).then(|| label.text.to_string())
 }
 
 /// What the heads from a row on are, if a table begins there.
@@ -406,7 +329,7 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
                 found.push(row);
             }
             // `1 2 3` below `Warp` and again below `Weft`.
-            Kind::Values if !found.is_empty() && counts_columns(row, context) => found.push(row),
+            Kind::Values if !found.is_empty() && numbered::counts_columns(row, context) => found.push(row),
             Kind::Other if found.is_empty() && stands_over(row, rows.get(end + 1), context) => {
                 first = end;
                 found.push(row);
@@ -536,16 +459,12 @@ fn belongs(
         // Heads of their own may follow the title of a section: then it is another table.
         Kind::Section(_) => heads(rows, at, context).is_none_or(|h| h.first == h.end),
         Kind::Values if region.down => {
-            is_labelled(row, &BTreeSet::new(), context) || (!after_blank && !is_counting(row, context))
+            is_labelled(row, &BTreeSet::new(), context) || (!after_blank && kind(row, context) != Kind::Head)
         }
         Kind::Values => !after_blank || fits(row, region, context),
         Kind::Head => !after_blank && heads(rows, at, context).is_none() && !is_header_line(row, context),
         Kind::Units | Kind::Other => !after_blank && !is_header_line(row, context),
     }
-}
-
-fn is_counting(row: &Row<'_>, context: &Context<'_>) -> bool {
-    kind(row, context) == Kind::Head
 }
 
 /// A key that header lines have, with a value.

@@ -2,14 +2,48 @@
 
 use std::collections::BTreeMap;
 
+use super::context::Context;
 use super::dialect::Role;
-use super::error::ReadProblem;
+use super::error::{ReadError, ReadProblem};
+use super::raw::Row;
+use super::shape;
 use super::unit_text::{is_angular, split_unit, unit};
 use super::vocabulary::Vocabulary;
+use super::words::folded;
 use crate::quantity::{Dimension, divides_by_length};
 
+/// What is wrong with a file of which no row was taken: R006 where a row has a number, R002 where none has.
+pub(super) fn not_read(rows: &[Row<'_>], context: &Context<'_>) -> ReadError {
+    let Some(at) = rows.iter().position(|row| has_value(row, context)) else {
+        return context.error(0, 0, ReadProblem::Empty);
+    };
+    let above = rows[..at].iter().rfind(|row| !row.is_blank()).unwrap_or(&rows[at]);
+    let words: Vec<String> = above.filled().map(|(_, c)| folded(&c.text).into_owned()).collect();
+    let found = format!(
+        "{:?} is over the numbers; a column of values is named by a symbol and its unit, B (gf·cm²/cm), beside a column of names or directions",
+        words.join(" | ")
+    );
+    context.error(above.line, above.column(0), ReadProblem::UnknownLayout { found })
+}
+
+/// Whether a cell is a number, or begins with one: `0.0812/0.0533`.
+fn has_value(row: &Row<'_>, context: &Context<'_>) -> bool {
+    row.filled().any(|(_, cell)| {
+        let begins =
+            cell.text.starts_with(|c: char| c.is_ascii_digit()) && cell.text.contains(context.decimal);
+        begins || shape::is_value(&cell.text, context)
+    })
+}
+
+pub(super) fn unknown_layout(context: &Context<'_>, row: &Row<'_>, words: &[String]) -> ReadError {
+    let (problem, inference) = unknown_words(words, context.vocabulary);
+    let mut error = context.error(row.line, row.column(0), problem);
+    error.about.inference = inference;
+    error
+}
+
 /// What R006 says of words over a row of numbers, and what a laboratory could write so that they are known.
-pub(super) fn unknown_words(words: &[String], vocabulary: Vocabulary<'_>) -> (ReadProblem, Vec<String>) {
+fn unknown_words(words: &[String], vocabulary: Vocabulary<'_>) -> (ReadProblem, Vec<String>) {
     let closest = vocabulary.closest(words);
     let found = match closest.first().filter(|_| !words.is_empty()) {
         None => "numbers stand without a heading row".to_string(),

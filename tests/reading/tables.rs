@@ -359,11 +359,28 @@ fn numbers_that_nothing_heads_are_no_empty_file() {
     assert_eq!(read("Fabric,Remark\nF1,none\n").unwrap_err().code(), "R002");
 }
 
+/// How many values a column of states makes doubtful (R126).
+fn states_of(text: &str) -> usize {
+    use kesf::finding::{Fact, ReadFact};
+    let of = |finding: &kesf::finding::Finding| match &finding.fact {
+        Fact::Reading(ReadFact::ColumnOfStates { keys, .. }) => keys.len(),
+        _ => 0,
+    };
+    read(text).findings.iter().map(of).sum()
+}
+
 /// What tells rows apart may be numbers in a column between those of names and values; the sign of a mean has its meaning.
 #[test]
 fn numbers_may_be_states_and_signs_means() {
     let long = "fabric,washes,direction,variable,value,unit\nF1,0,warp,B,0.0812,gf·cm²/cm\nF1,5,warp,B,0.065,gf·cm²/cm\n";
     assert!(told(&read(long), "R126")[0].contains("\"washes\""), "{long}");
+    // Merged cells of a state hold for the rows below; one remark is that of its own row.
+    let merged =
+        "Fabric,Washing,Direction,B\nCotton,before,warp,0.08\n,,weft,0.05\n,after,warp,0.12\n,,weft,0.09\n";
+    assert_eq!(states_of(merged), 2, "{merged}");
+    let remark =
+        "Fabric,Note,Direction,B\nCotton,outlier,warp,0.08\nCotton,,warp,0.081\nCotton,,warp,0.082\n";
+    assert_eq!(states_of(remark), 1, "{remark}");
     let signs = read(",B warp,B weft\nx\u{304},0.0812,0.0533\ns,0.016,0.0107\n");
     let found: Vec<_> = values(&signs).into_iter().map(|(.., direction, mean)| (direction, mean)).collect();
     assert_eq!(found, [(WARP, 0.0812), (WEFT, 0.0533)]);

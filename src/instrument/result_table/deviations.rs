@@ -95,6 +95,8 @@ impl Layout {
 }
 
 impl Table<'_, '_> {
+    /// Makes sure that the numbers are values.
+    ///
     /// # Errors
     /// R026 where the title or the name of the sheet says that these are no values, and nothing in the table does.
     pub(super) fn hold_values(&self) -> Result<(), ReadError> {

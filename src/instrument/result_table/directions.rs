@@ -7,13 +7,14 @@ use super::row_facts::no_direction;
 use super::summaries::summed_up;
 use super::{Datum, Own, RowFacts, Table};
 use crate::finding::{Finding, Place, ReadFact};
-use crate::instrument::angle::{angles, direction_of_angle};
+use crate::instrument::angle::{are_angles, direction_of_angle};
 use crate::instrument::contradictions::more_than_direction;
 use crate::instrument::curves::across_in_name;
 use crate::instrument::dialect::{HeaderKey, TableColumn};
 use crate::instrument::error::ReadError;
+use crate::instrument::numbered;
 use crate::instrument::raw::Row;
-use crate::instrument::shape::{self, Region};
+use crate::instrument::shape::Region;
 use crate::instrument::vocabulary::Vocabulary;
 use crate::instrument::words::normalised;
 use crate::instrument::{Direction, Parameter};
@@ -239,7 +240,7 @@ impl Table<'_, '_> {
         let stated = self.header.known.get(&HeaderKey::Direction).map(|entry| entry.text.clone());
         let lines = other.chain(self.header.caption.clone()).chain(stated);
         let mut key: Vec<(usize, Direction)> =
-            lines.flat_map(|line| shape::numbered(&line, self.context)).collect();
+            lines.flat_map(|line| numbered::directions(&line, self.context)).collect();
         key.sort_unstable();
         key.dedup();
         match key[..] {
@@ -293,7 +294,7 @@ impl Layout {
     pub(super) fn columns_of_angles(&self, region: &Region<'_>) -> BTreeSet<usize> {
         let named = self.labels.iter().filter(|label| label.meta == Some(TableColumn::Direction));
         let indices = named.map(|label| label.index);
-        indices.filter(|i| angles(region.rows.iter().filter_map(|row| row.get(*i))).is_some()).collect()
+        indices.filter(|i| are_angles(region.rows.iter().filter_map(|row| row.get(*i)))).collect()
     }
 
     /// `Warp yarn` and `Filling direction` over columns: names that are directions, each of another.

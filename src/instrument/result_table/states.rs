@@ -1,6 +1,6 @@
 //! Columns of unknown meaning that tell apart rows which are averaged: states of one fabric, or other fabrics.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Datum, Table};
 use crate::finding::{Finding, Place, ReadFact};
@@ -27,6 +27,27 @@ impl State {
 }
 
 impl Table<'_, '_> {
+    /// Blanks below a state are of that state, as of merged cells, in a column that names several. One entry among blanks is a remark on
+    /// its own row.
+    pub(super) fn fill_states(&mut self, lines: impl Iterator<Item = usize>) {
+        let mut entries: BTreeMap<usize, BTreeSet<&str>> = BTreeMap::new();
+        for (index, text) in self.states.values().flatten() {
+            entries.entry(*index).or_default().insert(text);
+        }
+        let several: Vec<usize> =
+            entries.into_iter().filter(|(_, of)| of.len() > 1).map(|(i, _)| i).collect();
+        let mut above: BTreeMap<usize, String> = BTreeMap::new();
+        for line in lines.filter(|_| !several.is_empty()) {
+            let of_line = self.states.entry(line).or_default();
+            for index in &several {
+                match of_line.get(index) {
+                    Some(text) => drop(above.insert(*index, text.clone())),
+                    None => of_line.extend(above.get(index).map(|text| (*index, text.clone()))),
+                }
+            }
+        }
+    }
+
     /// Adds the columns in which the repeats of a value differ.
     pub(super) fn states_of(&self, fabric: &Option<String>, kept: &[Datum], states: &mut States) {
         let [first, _, ..] = kept else { return };
