@@ -29,8 +29,11 @@ impl Estimate {
         }
         let n = values.len();
         let mean = values.iter().sum::<f64>() / n as f64;
-        let sd =
-            (n > 1).then(|| (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1) as f64).sqrt());
+        let squares = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
+        let sd = (n > 1).then(|| (squares / (n - 1) as f64).sqrt());
+        // Equal repeats differ by the rounding of their mean alone.
+        let rounding = n as f64 * f64::EPSILON * mean.abs();
+        let sd = sd.map(|sd| if sd <= rounding { 0.0 } else { sd });
         Some(Self { mean, sd, n, values: values.to_vec() })
     }
 
@@ -67,6 +70,18 @@ mod tests {
         assert_eq!(
             [(1, None), (1, Some(0.1)), (3, Some(0.1))].map(|(n, sd)| repeats_text(n, sd)),
             ["1", "not stated", "3"]
+        );
+    }
+
+    /// The mean of three times 0.1 is none of them: 0.1 + 0.1 + 0.1 is not 0.3.
+    #[test]
+    fn equal_repeats_have_no_deviation_and_close_ones_have() {
+        assert_eq!(Estimate::of(&[0.1; 3]).unwrap().sd, Some(0.0));
+        assert_eq!(Estimate::of(&[0.04, 0.04 + 2e-17]).unwrap().sd, Some(0.0));
+        assert_relative_eq!(
+            Estimate::of(&[1.0, 1.0 + 2e-12]).unwrap().sd.unwrap(),
+            2e-12 / 2f64.sqrt(),
+            max_relative = 1e-3
         );
     }
 
