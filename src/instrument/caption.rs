@@ -3,100 +3,10 @@
 //! Such numbers look like values, and are none. Only a title that says nothing else counts: `Means and standard deviations` stands over
 //! values.
 
-use super::dialect::{Statistic, TableColumn};
+use super::dialect::{Statistic, TableColumn, TitleWord};
 use super::vocabulary::Vocabulary;
 use super::words::{folded, normalised};
 
-/// What stands before the number of a table.
-const TABLES: [&str; 14] = [
-    "table", "tab", "appendix", "tabelle", "tableau", "tabla", "tabella", "tabela", "tabulka", "tablo",
-    "tabel", "表", "附表", "표",
-];
-/// Comparisons and results of statistics, which are no values of a fabric.
-const COMPARISONS: [&str; 31] = [
-    "difference",
-    "differences",
-    "correlation",
-    "correlations",
-    "correlation coefficient",
-    "correlation coefficients",
-    "correlation matrix",
-    "p value",
-    "p values",
-    "t value",
-    "t values",
-    "f value",
-    "f values",
-    "anova",
-    "factor loadings",
-    "regression coefficients",
-    "Differenz",
-    "Differenzen",
-    "Korrelation",
-    "Korrelationen",
-    "différence",
-    "corrélation",
-    "diferencia",
-    "correlación",
-    "differenza",
-    "correlazione",
-    "diferença",
-    "correlação",
-    "相関",
-    "相关",
-    "相关系数",
-];
-/// What is a comparison where it is in per cent; else it may be told by values: `Changes of B by washing`.
-const CHANGES: [&str; 22] = [
-    "change",
-    "changes",
-    "reduction",
-    "increase",
-    "decrease",
-    "improvement",
-    "variation",
-    "loss",
-    "Änderung",
-    "Änderungen",
-    "Veränderung",
-    "Zunahme",
-    "Abnahme",
-    "changement",
-    "cambio",
-    "cambios",
-    "variazione",
-    "variação",
-    "verandering",
-    "zmiana",
-    "変化率",
-    "变化率",
-];
-/// What leads on from the head of a title to what it is of.
-const OF: [&str; 25] = [
-    "in", "with", "to", "vs", "of", "for", "between", "by", "after", "due", "der", "des", "von", "zwischen",
-    "nach", "de", "du", "del", "della", "di", "do", "da", "dos", "das", "van",
-];
-/// What tells that a title names more than one thing.
-const AND: [&str; 14] =
-    ["and", "with", "incl", "including", "und", "mit", "et", "avec", "y", "con", "e", "com", "en", "plus"];
-/// What a remark has, and no title.
-const VERBS: [&str; 14] =
-    ["is", "are", "was", "were", "ist", "sind", "war", "waren", "est", "sont", "son", "sono", "sao", "given"];
-/// What stands before a change without making it that of something else.
-const QUALIFIERS: [&str; 5] = ["percent", "prozent", "relativ", "mean", "average"];
-/// Where deviations stand that a remark speaks of: `in brackets`.
-const WHERE: [&str; 10] = [
-    "brackets",
-    "parentheses",
-    "parenthesis",
-    "italics",
-    "italic",
-    "bold",
-    "klammern",
-    "parentesi",
-    "parenteses",
-    "parentesis",
-];
 /// Names of a spread that a sheet has for something else.
 const NAMES: [&str; 4] = ["sigma", "error", "dev", "err"];
 /// Words before the head of a title, `Relative changes`, and those of a phrase.
@@ -106,35 +16,40 @@ const PHRASE: usize = 4;
 /// Whether a line over a table says that its numbers are no values.
 pub(super) fn is_of_no_values(text: &str, v: Vocabulary<'_>) -> bool {
     let text = folded(text);
-    let title = without_number(&text).replace(" (%)", "%").replace("(%)", "%");
+    let title = without_number(&text, v).replace(" (%)", "%").replace("(%)", "%");
     // What stands behind a mark or in brackets is another thing.
     let marks = ['(', '[', ',', ';', '±', '&', '+', '/'];
     let (head, rest) = title.split_at(title.find(marks).unwrap_or(title.len()));
     // `Weight reduction (10 %)` is a treatment.
     let is_amount = rest.contains(|c: char| c.is_ascii_digit());
     let mut has_percent =
-        head.contains('%') || (!is_amount && (rest.contains('%') || normalised(rest).contains("percent")));
+        head.contains('%') || (!is_amount && (rest.contains('%') || names_percent(rest, v)));
     let words = words_of(head);
-    if words.iter().any(|word| VERBS.contains(&normalised(word).as_str())) {
+    let means: Vec<Option<TitleWord>> = words.iter().map(|word| v.title_word(word)).collect();
+    if means.contains(&Some(TitleWord::Verb)) {
         return false;
     }
+    has_percent |= means.contains(&Some(TitleWord::Percent));
     let mut is_head = true;
     for at in 0..words.len().min(BEFORE + 1) {
-        let word = normalised(words[at]);
-        if AND.contains(&word.as_str()) {
+        if matches!(means[at], Some(TitleWord::And | TitleWord::With)) {
             return false;
         }
-        has_percent |= word.starts_with("percent") || word.starts_with("prozent");
-        is_head &= at == 0 || QUALIFIERS.iter().any(|start| normalised(words[at - 1]).starts_with(start));
+        is_head &= at == 0 || matches!(means[at - 1], Some(TitleWord::Percent | TitleWord::Qualifier));
         for n in 1..=PHRASE.min(words.len() - at) {
-            let next = words.get(at + n).map(|word| normalised(word));
+            let next = words.get(at + n).map(|_| means[at + n]);
             // `Standard deviations in brackets` is a remark on values.
-            let says_where = next.as_deref() == Some("in")
-                && words.get(at + n + 1).is_some_and(|word| WHERE.contains(&normalised(word).as_str()));
-            let leads_on = next.is_none_or(|word| OF.contains(&word.as_str())) && !says_where;
+            let says_where = means.get(at + n + 1) == Some(&Some(TitleWord::Place));
+            let leads_on = next.is_none_or(|word| {
+                matches!(word, Some(TitleWord::Of | TitleWord::With | TitleWord::Percent))
+            });
             let phrase = words[at..at + n].join(" ");
             let in_percent = has_percent && is_head;
-            if leads_on && is_of_comparison(&phrase, in_percent, v) && !names_mean(&words[at + n..], v) {
+            if leads_on
+                && !says_where
+                && is_of_comparison(&phrase, in_percent, v)
+                && !names_mean(&words[at + n..], v)
+            {
                 return true;
             }
         }
@@ -148,7 +63,7 @@ fn is_name_of_no_values(name: &str, v: Vocabulary<'_>) -> bool {
     let words = words_of(&name);
     let ends = (1..=PHRASE.min(words.len())).flat_map(|n| [&words[..n], &words[words.len() - n..]]);
     !names_mean(&words, v)
-        && !words.iter().any(|word| AND.contains(&normalised(word).as_str()))
+        && !words.iter().any(|word| matches!(v.title_word(word), Some(TitleWord::And | TitleWord::With)))
         && ends.into_iter().map(|phrase| phrase.join(" ")).any(|phrase| {
             !NAMES.contains(&normalised(&phrase).as_str()) && is_of_comparison(&phrase, false, v)
         })
@@ -171,8 +86,17 @@ fn names_mean(words: &[&str], v: Vocabulary<'_>) -> bool {
     phrases.any(|phrase| v.statistic(&phrase) == Some(Statistic::Mean))
 }
 
+/// Whether some word of a text says that numbers are in per cent.
+fn names_percent(text: &str, v: Vocabulary<'_>) -> bool {
+    words_of(text).iter().any(|word| v.title_word(word) == Some(TitleWord::Percent))
+}
+
 fn is_of_comparison(phrase: &str, in_percent: bool, v: Vocabulary<'_>) -> bool {
-    is_spread(phrase, v) || is_one_of(&COMPARISONS, phrase) || (in_percent && is_one_of(&CHANGES, phrase))
+    match v.title_word(phrase) {
+        Some(TitleWord::NoValues) => true,
+        Some(TitleWord::Change) => in_percent || is_spread(phrase, v),
+        _ => is_spread(phrase, v),
+    }
 }
 
 /// Chinese and Japanese have no blanks between words: the head is the last of them.
@@ -182,15 +106,17 @@ fn ends_with_comparison(head: &str, v: Vocabulary<'_>) -> bool {
     let mut ends = (0..chars.len().saturating_sub(1)).map(|at| chars[at..].iter().collect::<String>());
     is_wide
         && !head.contains("平均")
-        && ends.any(|end| v.statistic(&end) == Some(Statistic::Spread) || is_one_of(&COMPARISONS, &end))
+        && ends.any(|end| {
+            v.statistic(&end) == Some(Statistic::Spread) || v.title_word(&end) == Some(TitleWord::NoValues)
+        })
 }
 
 /// `Table A2: …` and `Tab. 3 …` without what numbers it.
-fn without_number(text: &str) -> &str {
+fn without_number<'t>(text: &'t str, v: Vocabulary<'_>) -> &'t str {
     let mut parts = text.splitn(3, |c: char| c.is_whitespace() || matches!(c, ':' | '.'));
     let first = parts.next().unwrap_or_default();
     let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
-    if !is_one_of(&TABLES, stem) {
+    if v.title_word(stem) != Some(TitleWord::Table) {
         return text;
     }
     let rest = text[first.len()..].trim_start_matches([' ', '.', ':', '-']);
@@ -205,18 +131,18 @@ fn without_number(text: &str) -> &str {
     rest.trim_start_matches([' ', '.', ':', '-', '|'])
 }
 
-/// Whether a text begins with the number of a table: `Table A2`.
-pub(super) fn is_number_of_table(text: &str) -> bool {
+/// Whether a title begins with the number of its table and goes on.
+pub(super) fn is_numbered(title: &str, v: Vocabulary<'_>) -> bool {
+    without_number(title, v).len() < title.len()
+}
+
+/// Whether a text is the number of a table: `Table A2`.
+pub(super) fn is_number_of_table(text: &str, v: Vocabulary<'_>) -> bool {
     let mut words = text.split([' ', '.']).filter(|w| !w.is_empty());
     let (first, second) = (words.next().unwrap_or_default(), words.next());
     let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
     let is_numbered = stem.len() < first.len() || second.is_some_and(|w| w.chars().count() <= 5);
-    is_one_of(&TABLES, stem) && is_numbered && words.count() <= 1
-}
-
-fn is_one_of(list: &[&str], text: &str) -> bool {
-    let text = normalised(text);
-    !text.is_empty() && list.iter().any(|word| normalised(word) == text)
+    v.title_word(stem) == Some(TitleWord::Table) && is_numbered && words.count() <= 1
 }
 
 /// Whether a phrase names a spread; of short ones only that of the deviation, as `CV` is viscose and `se` a word.
@@ -259,6 +185,20 @@ mod tests {
             "Difference between warp and weft",
             "KES特性値の標準偏差",
             "表2 标准差",
+            "RSD",
+            "RSD of KES parameters",
+            "Abweichung in %",
+            "Percent retention",
+            "Percent retention of B after washing",
+            "Pearson's r",
+            "Measurement uncertainty",
+            "Table 4. Expanded uncertainty (k = 2)",
+            "Minimum values",
+            "Simulated values",
+            "Korrelationskoeffizienten",
+            "Changement en %",
+            "Variação percentual",
+            "KES特性値の最大値",
         ] {
             assert!(is_of_no_values(title, v), "{title}");
         }
@@ -280,6 +220,12 @@ mod tests {
             "Standard deviations in parentheses",
             "平均値と標準偏差",
             "Bending",
+            "Percent cotton",
+            "Simulated wear",
+            "Minimum values and means",
+            "Maximum load 50 gf/cm",
+            "Gemessene Werte (Abweichung in Klammern)",
+            "温度差",
         ] {
             assert!(!is_of_no_values(title, v), "{title}");
         }
@@ -295,11 +241,12 @@ mod tests {
 
     #[test]
     fn numbers_of_tables() {
+        let v = Vocabulary::new(&[]);
         for text in ["Table A2", "Table 3", "Tab. 4", "表2", "Table 3.1"] {
-            assert!(is_number_of_table(text), "{text}");
+            assert!(is_number_of_table(text, v), "{text}");
         }
         for text in ["Table of contents here", "Date", "Tablecloth", "Sample 2"] {
-            assert!(!is_number_of_table(text), "{text}");
+            assert!(!is_number_of_table(text, v), "{text}");
         }
     }
 }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::context::Context;
 use super::error::{ReadError, ReadProblem};
-use super::raw::{Cell, Row};
+use super::raw::Row;
 use super::result_table::{differ, two_units};
 use super::sniff::{Number, number};
 use super::unit_text::{split_unit, unit};
@@ -126,16 +126,5 @@ impl Columns {
                 cell.text = Cow::Owned(format!("{} ({unit})", cell.text.trim()));
             }
         }
-    }
-}
-
-impl Row<'_> {
-    /// The same cells, borrowed.
-    fn by_reference(&self) -> Row<'_> {
-        let mut cells = Vec::with_capacity(self.cells.len());
-        for cell in &self.cells {
-            cells.push(Cell { text: Cow::Borrowed(cell.text.as_ref()), column: cell.column });
-        }
-        Row { line: self.line, cells, in_cells: self.in_cells }
     }
 }

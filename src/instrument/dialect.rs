@@ -108,6 +108,33 @@ pub enum Statistic {
     Other,
 }
 
+/// A word in the title of a table, or in the name of its sheet, that tells what the numbers are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum TitleWord {
+    /// It stands before the number of a table: `Table`, `Appendix`.
+    Table,
+    /// Such numbers are no values of a fabric: `correlation`, `p values`, `uncertainty`.
+    NoValues,
+    /// They are none if they are in per cent, else it may be told by values: `changes of B by washing`.
+    Change,
+    /// They are in per cent.
+    Percent,
+    /// It stands before a change without making it that of something else: `relative`, `mean`.
+    Qualifier,
+    /// It leads on to what the numbers are of: `of`, `between`.
+    Of,
+    /// The title names more than one thing: `and`.
+    And,
+    /// Either of these two: `with`.
+    With,
+    /// A remark has it, and no title: `are`.
+    Verb,
+    /// Where deviations stand that a remark speaks of: `in brackets`.
+    Place,
+}
+
 /// Which way the drive goes in a column that holds one branch of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -189,6 +216,9 @@ pub struct Dialect {
     /// Words of rows and columns that sum up others.
     #[serde(deserialize_with = "words")]
     pub statistics: BTreeMap<Statistic, Vec<String>>,
+    /// Words of titles that say what the numbers of a table are.
+    #[serde(deserialize_with = "words")]
+    pub titles: BTreeMap<TitleWord, Vec<String>>,
     /// Other names of parameters, by symbol.
     #[serde(deserialize_with = "words")]
     pub symbols: BTreeMap<String, Vec<String>>,

@@ -3,13 +3,12 @@
 //! Blocks may be stacked (each with its own header lines, which override those before) and stand
 //! side by side (column pairs under one heading row, told apart by rows above the headings).
 
-use std::collections::BTreeMap;
-
-use super::caption::is_number_of_table;
+use super::caption::{is_number_of_table, is_numbered};
 use super::column_name::ColumnName;
 use super::context::Context;
 use super::dialect::{HeaderKey, Role};
 use super::error::{ReadError, ReadProblem};
+pub(super) use super::header::{Entry, Header};
 use super::keyed_rows::{self, KeyColumn};
 use super::label::Label;
 use super::numbered;
@@ -24,25 +23,6 @@ use super::unit_text::{is_volt, split_unit, unbracketed, unit};
 use super::volts;
 use super::words::{bare, folded};
 use crate::finding::{Finding, Place, ReadFact};
-
-/// A header value and where it stands.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Entry {
-    pub text: String,
-    pub line: usize,
-    pub column: usize,
-}
-
-/// Header lines in force: those that have a meaning here, and the rest untouched.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Header {
-    pub known: BTreeMap<HeaderKey, Entry>,
-    pub other: BTreeMap<String, String>,
-    /// The last line of words alone since the record before.
-    pub caption: Option<String>,
-    /// The number of repeats that a line since the table before states: `Mean values, n = 5`.
-    pub repeats: Option<usize>,
-}
 
 /// A column of a curve.
 #[derive(Clone, Debug)]
@@ -163,6 +143,7 @@ pub(super) fn blocks<'t>(
     if blocks.is_empty() {
         return Err(unread.unwrap_or_else(|| suggest::not_read(rows, context)));
     }
+    hand_on_notes(&mut blocks, &scanner);
     let has_table = blocks.iter().any(|block| matches!(block, Block::Table { .. }));
     scanner.findings.extend(Some(stray).filter(|_| has_table).and_then(|stray| stray::apart(stray, context)));
     if let Some(line) = behind.first() {
@@ -170,6 +151,20 @@ pub(super) fn blocks<'t>(
         scanner.findings.push(Finding::new(ReadFact::RowsNotRead { lines: behind }).at(place));
     }
     Ok((blocks, scanner.findings))
+}
+
+/// Gives every table the lines that follow it, and the only block of a file a title with a number below it.
+fn hand_on_notes(blocks: &mut [Block<'_>], end: &Scanner<'_, '_>) {
+    let is_only = blocks.len() == 1;
+    for block in blocks {
+        let Block::Table { header, region } = block else { continue };
+        header.note_below(&end.header);
+        let last = region.rows.last().map_or(0, |row| row.line);
+        if is_only && header.caption.is_none() && end.caption_line > last {
+            let title = end.header.caption.clone();
+            header.caption = title.filter(|title| is_numbered(title, end.context.vocabulary));
+        }
+    }
 }
 
 pub(super) struct Scanner<'t, 'a> {
@@ -267,14 +262,16 @@ impl<'t> Scanner<'t, '_> {
         }
         self.direction_above();
         self.check_width(heading, &rows)?;
-        let keys = keyed_rows::columns(heading, &columns, &rows, self.context);
+        let keys = keyed_rows::columns(heading, &columns, &rows, &self.header, self.context);
         self.note_strange_columns(heading, &columns, &keys, &rows);
         for column in &keys {
-            self.note_entry_in_rows(column, &rows);
-            if column.are_angles {
-                let place = Place::at(self.context.path, heading.line, heading.column(column.index));
-                self.findings.push(Finding::new(ReadFact::AnglesAsDirections {}).at(place));
+            if !column.is_of_states() {
+                self.note_entry_in_rows(column, &rows);
             }
+            let written = column.directions.as_ref();
+            let fact = written.and_then(|(written, of_texts)| written.fact(of_texts.keys().cloned()));
+            let place = Place::at(self.context.path, heading.line, heading.column(column.index));
+            self.findings.extend(fact.map(|fact| Finding::new(fact).at(place)));
         }
         (self.above, self.tells_another) = (Some(columns.clone()), false);
         let mut pairs = self.pairs(columns, &rows)?;
@@ -477,7 +474,7 @@ impl<'t> Scanner<'t, '_> {
                 if text.is_empty() {
                     self.header.caption = Some(words);
                     self.caption_line = line;
-                } else if is_number_of_table(name) {
+                } else if is_number_of_table(name, self.context.vocabulary) {
                     self.header.caption = Some(format!("{name}: {}", text.join(", ")));
                     self.caption_line = line;
                 }

@@ -2,7 +2,9 @@
 
 use super::Direction;
 use super::context::Context;
+use super::dialect::HeaderKey;
 use super::facets;
+use super::header::Header;
 use super::raw::Row;
 use super::shape::is_value;
 
@@ -17,7 +19,7 @@ pub(super) fn counts(row: &Row<'_>, context: &Context<'_>) -> bool {
 }
 
 /// The directions that a key gives to numbers behind symbols: `1 = weft, 2 = warp`.
-pub(super) fn directions(text: &str, context: &Context<'_>) -> Vec<(usize, Direction)> {
+fn directions(text: &str, context: &Context<'_>) -> Vec<(usize, Direction)> {
     let words: Vec<&str> = text.split(|c: char| !c.is_alphanumeric()).collect();
     // Every row is asked.
     if !words.iter().any(|word| ["1", "2"].contains(word)) {
@@ -41,6 +43,24 @@ pub(super) fn directions(text: &str, context: &Context<'_>) -> Vec<(usize, Direc
         }
     }
     pairs
+}
+
+/// What a line above a table or a record, or else one below it, says that the numbers 1 and 2 are.
+pub(super) fn key_of(header: &Header, context: &Context<'_>) -> Option<[Direction; 2]> {
+    let other = header.other.iter().map(|(name, value)| format!("{name} = {value}"));
+    let stated = header.known.get(&HeaderKey::Direction).map(|entry| entry.text.clone());
+    key(other.chain(header.caption.clone()).chain(stated), context)
+        .or_else(|| key(header.below.iter().cloned(), context))
+}
+
+fn key(lines: impl Iterator<Item = String>, context: &Context<'_>) -> Option<[Direction; 2]> {
+    let mut key: Vec<(usize, Direction)> = lines.flat_map(|line| directions(&line, context)).collect();
+    key.sort_unstable();
+    key.dedup();
+    match key[..] {
+        [(1, first), (2, second)] if first != second => Some([first, second]),
+        _ => None,
+    }
 }
 
 /// Whether a row is such a key, and heads no columns.

@@ -52,6 +52,15 @@ impl Row<'_> {
         self.cells.get(index).map(|c| c.text.trim()).filter(|t| !t.is_empty())
     }
 
+    /// The same cells, borrowed.
+    pub fn by_reference(&self) -> Row<'_> {
+        let mut cells = Vec::with_capacity(self.cells.len());
+        for cell in &self.cells {
+            cells.push(Cell { text: Cow::Borrowed(cell.text.as_ref()), column: cell.column });
+        }
+        Row { line: self.line, cells, in_cells: self.in_cells }
+    }
+
     /// The column of a cell; past the end, the column after the last one.
     pub fn column(&self, index: usize) -> usize {
         let width = |c: &Cell<'_>| if self.in_cells { 1 } else { c.text.chars().count() };

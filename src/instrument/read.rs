@@ -25,7 +25,8 @@ use super::seen::Seen;
 use super::sniff::{Sniffed, sniff, sniff_lines};
 use super::vocabulary::Vocabulary;
 use super::workbook::{self, Archive};
-use super::{cell_units, code_page, letters, limits, lines, means, row_names, samples, web_page};
+use super::{brackets_below, cell_units, code_page, letters, limits, lines, means, row_names, samples};
+use super::{side_by_side, slashed, web_page};
 use crate::finding::{Finding, Place, ReadFact};
 use crate::platform;
 
@@ -278,12 +279,10 @@ fn sheets(
         vocabulary,
     ));
     // A letter of a direction names no sample, and no more does a mean.
-    let names: BTreeSet<&str> = of_sheets
-        .iter()
-        .map(String::as_str)
-        .filter(|name| !letters.contains_key(name) && !means::names_mean(name, vocabulary))
-        .collect();
-    let samples = samples::of_sheets(&names.into_iter().collect::<Vec<_>>(), vocabulary);
+    let mut names: Vec<&str> = of_sheets.iter().map(String::as_str).collect();
+    names.retain(|name| !letters.contains_key(name) && !means::names_mean(name, vocabulary));
+    names.dedup();
+    let samples = samples::of_sheets(&names, vocabulary);
     if samples.len() > 1 {
         let mut names = of_sheets.iter();
         let records = samples::averaged(&content.measurements, |_| names.next().cloned().unwrap_or_default());
@@ -344,6 +343,12 @@ fn table(
         content.findings.push(Finding::new(fact.clone()).at(Place::file(context.path)));
     }
     let rows = restored.as_ref().map_or(rows, |(rows, _)| rows.as_slice());
+    let stacked = side_by_side::stacked(rows, context);
+    let rows = stacked.as_deref().unwrap_or(rows);
+    let apart = slashed::apart(rows, context);
+    let rows = apart.as_deref().unwrap_or(rows);
+    let with_deviations = brackets_below::to_values(rows, context);
+    let rows = with_deviations.as_deref().unwrap_or(rows);
     let split = lines::split(rows, context.decimal, context.vocabulary);
     let rows = split.as_deref().unwrap_or(rows);
     let bare = cell_units::to_headings(rows, context)?;
@@ -357,7 +362,7 @@ fn table(
         match block {
             Block::Curves { pairs, rows, keys } => {
                 content.rows_name_fabrics |= keyed_rows::name_fabrics(&keys);
-                let records = keyed_rows::records(pairs, rows, &keys);
+                let records = keyed_rows::records(pairs, rows, &keys, context);
                 let of_block = records.len();
                 for (k, (pairs, rows)) in records.into_iter().enumerate() {
                     curves::add(&pairs, &rows, ends_file && k + 1 == of_block, context, content)?;

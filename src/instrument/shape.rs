@@ -413,13 +413,12 @@ pub(super) fn region<'t>(
                 && rows.get(i + 1).is_some_and(|next| {
                     kind(next, context) == Kind::Values
                         && !is_header_line(next, context)
-                        && fits(next, &region, context)
+                        && (fits(next, &region, context) || heads_first_rows(row, next, &region, context))
                 });
             if !goes_on {
                 break;
             }
-            // `Surface` is a title as well as a key.
-            if row.filled().count() == 1 && !row.filled().any(|(_, c)| c.text.contains([':', '='])) {
+            if is_bare_key(row) {
                 region.rows.push(row);
             }
             i += 1;
@@ -430,6 +429,16 @@ pub(super) fn region<'t>(
         end = i;
     }
     Some((region, end))
+}
+
+/// `Surface` alone is a title as well as a key.
+fn is_bare_key(row: &Row<'_>) -> bool {
+    row.filled().count() == 1 && !row.filled().any(|(_, c)| c.text.contains([':', '=']))
+}
+
+/// Whether it is that of the first rows of parameters.
+fn heads_first_rows(row: &Row<'_>, next: &Row<'_>, region: &Region<'_>, context: &Context<'_>) -> bool {
+    is_bare_key(row) && region.down && region.rows.is_empty() && is_labelled(next, &BTreeSet::new(), context)
 }
 
 /// Whether the heads stand here once more, as at the top of a new page.
@@ -454,6 +463,10 @@ fn belongs(
     let is_remark = row.get(0).is_some_and(|t| t.starts_with('#')) && row.filled().count() == 1;
     if is_remark {
         return !after_blank;
+    }
+    // `1 = weft, 2 = warp` below the table.
+    if numbered::is_key(row, context) {
+        return false;
     }
     match kind(row, context) {
         // Heads of their own may follow the title of a section: then it is another table.

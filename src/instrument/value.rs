@@ -62,6 +62,12 @@ pub(super) fn printed(cell: &str, decimal: char) -> Printed {
     if is_bound(&text, decimal) {
         return Printed::Bound;
     }
+    if let Some(bare) = without_range(&text, decimal) {
+        return match value(bare, decimal) {
+            (Number::Value(v), sd) => Printed::Marked(v, sd),
+            _ => Printed::Plain(plain, sd),
+        };
+    }
     let parts = text.split_once('±').map_or((text.as_ref(), None), |(mean, sd)| (mean, Some(sd)));
     let bare = [Some(parts.0), parts.1].map(|part| part.map(|part| without_mark(part, decimal)));
     let bare = match bare {
@@ -86,6 +92,20 @@ fn without_raised(cell: &str) -> Option<String> {
     let is_power = bare.split(|c: char| !c.is_ascii_digit()).any(|digits| digits == "10");
     (is_marked && !is_power && bare.starts_with(|c: char| c.is_ascii_digit() || "+-−.,".contains(c)))
         .then_some(bare)
+}
+
+/// A number without the range in brackets behind it, `0.081 [0.07-0.09]` and `0.081 (0.07, 0.09)`, or a deviation without a number behind
+/// it that may be that of the repeats or one in per cent, `0.081 ± 0.003 (5)`.
+fn without_range(text: &str, decimal: char) -> Option<&str> {
+    let inner = text.strip_suffix([')', ']'])?;
+    let at = inner.rfind(['(', '['])?;
+    let (bare, behind) = (inner[..at].trim_end(), inner[at + 1..].trim());
+    let ends =
+        behind.split_once(';').or_else(|| behind.split_once(", ")).or_else(|| behind.split_once(" – "));
+    let is_range = is_bound(behind, decimal)
+        || ends.is_some_and(|(low, high)| [low, high].iter().all(|t| is_decimal(t, decimal)));
+    let is_count = bare.contains('±') && behind.chars().all(|c| c.is_ascii_digit()) && !behind.is_empty();
+    (is_range || is_count).then_some(bare)
 }
 
 /// A number without what a test of significance has behind it, `0.081 n.s.` and `0.081 (**)`.
@@ -117,15 +137,18 @@ fn without_mark(text: &str, decimal: char) -> &str {
     if few && decimals && !letters.eq_ignore_ascii_case("e") { bare } else { text }
 }
 
+fn is_decimal(text: &str, decimal: char) -> bool {
+    text.contains(decimal) && matches!(number(text.trim(), decimal), Number::Value(_))
+}
+
 /// `<0.01`, `~0.08`, or two decimal numbers with a dash between them.
 fn is_bound(text: &str, decimal: char) -> bool {
-    let is_number = |t: &str| matches!(number(t.trim(), decimal), Number::Value(_));
     let open = text.trim_start_matches(['<', '>', '≤', '≥', '=', '~', '≈']);
     if open.len() < text.len() {
-        return is_number(open);
+        return matches!(number(open.trim(), decimal), Number::Value(_));
     }
     let ends = text.split_once("...").or_else(|| text.split_once(" to ")).or_else(|| text.split_once('-'));
-    ends.is_some_and(|(low, high)| [low, high].iter().all(|t| t.contains(decimal) && is_number(t)))
+    ends.is_some_and(|(low, high)| [low, high].iter().all(|t| is_decimal(t, decimal)))
 }
 
 /// `8.0×10⁻⁶`, `8.0 x 10^-6`, `8,0·10-6`: a number and a power of ten that says it is one, by a sign, a mark or raised digits.
@@ -215,6 +238,11 @@ mod tests {
         for text in ["0.0812a", "0.0812 ab", "0.0812A,B", "0.0812*", "0.0812**", "0.0812†", "0.0812ᵃ"] {
             assert_eq!(printed(text, '.'), Printed::Marked(0.0812, None), "{text}");
         }
+        for text in ["0.0812 [0.07–0.09]", "0.0812 (0.07-0.09)", "0.0812 (0.07, 0.09)", "0.0812 [0.07; 0.09]"]
+        {
+            assert_eq!(printed(text, '.'), Printed::Marked(0.0812, None), "{text}");
+        }
+        assert_eq!(printed("0.081 ± 0.003 (5)", '.'), Printed::Marked(0.081, Some(0.003)));
         assert_eq!(printed("0.081a ± 0.003", '.'), Printed::Marked(0.081, Some(0.003)));
         assert_eq!(printed("0,5²", ','), Printed::Marked(0.5, None));
         assert_eq!(printed("51¹", '.'), Printed::Marked(51.0, None));

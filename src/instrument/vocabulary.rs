@@ -5,7 +5,8 @@ use std::hash::Hash;
 use std::sync::OnceLock;
 
 use super::dialect::{
-    BranchColumn, Dialect, DirectionWord, HeaderKey, Role, Statistic, TableColumn, dialects, letter_of,
+    BranchColumn, Dialect, DirectionWord, HeaderKey, Role, Statistic, TableColumn, TitleWord, dialects,
+    letter_of,
 };
 use super::unit_text::{split_unit, unit};
 use super::words::{folded, normalised};
@@ -26,6 +27,7 @@ struct Index {
     branches: HashMap<&'static str, BranchColumn>,
     table: HashMap<&'static str, TableColumn>,
     statistics: HashMap<&'static str, Statistic>,
+    titles: HashMap<&'static str, TitleWord>,
     symbols: HashMap<&'static str, Parameter>,
     /// The built-in dialects that know a word, one bit each.
     known: HashMap<&'static str, u32>,
@@ -75,6 +77,7 @@ fn index() -> &'static Index {
         branches: collect(|d| &d.branches, |k| Some(*k)),
         table: table_columns(),
         statistics: collect(|d| &d.statistics, |k| Some(*k)),
+        titles: collect(|d| &d.titles, |k| Some(*k)),
         symbols: collect(|d| &d.symbols, |k| Parameter::from_symbol(k)),
         known: known(),
     })
@@ -280,6 +283,11 @@ impl<'a> Vocabulary<'a> {
             (!self.user.is_empty() && self.key(name) == Some(HeaderKey::Factor))
                 .then_some(TableColumn::Factor)
         })
+    }
+
+    /// What a whole word or phrase of a title says of the numbers below.
+    pub fn title_word(self, phrase: &str) -> Option<TitleWord> {
+        self.find(phrase, false, |d| &d.titles, &index().titles)
     }
 
     /// How a label says that a row or column sums up others: the whole label, and no word within it.

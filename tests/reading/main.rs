@@ -11,6 +11,7 @@ mod folders;
 mod layouts;
 mod malformed;
 mod mutations;
+mod rearranged;
 mod records;
 mod reencoded;
 mod shown;

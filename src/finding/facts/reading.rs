@@ -192,7 +192,7 @@ super::facts! {
         "R130" MarkedNumbers {
             /// What stands in the cells.
             cells: Vec<String>,
-        } = "marks behind numbers are left out, and the numbers are read: {}; see what the table says of them", some(cells);
+        } = "marks, ranges and counts behind numbers are left out, and the numbers are read: {}; see what the table says of them", some(cells);
         /// Cells that bound a value.
         "R131" BoundsLeftOut {
             /// What stands in the cells.

@@ -204,7 +204,7 @@ impl Table<'_, '_> {
             self.numbers_of_specimens();
             return;
         }
-        let key = self.key_of_numbers();
+        let key = numbered::key_of(self.header, self.context);
         let is_stated = key.is_some();
         let key = key.unwrap_or([Direction::Warp, Direction::Weft]);
         let direction = |index: Option<usize>| index.and_then(|n| key.get(n.wrapping_sub(1)).copied());
@@ -232,21 +232,6 @@ impl Table<'_, '_> {
             self.findings.push(Finding::new(ReadFact::AnglesAsDirections {}).at(place));
         }
         direction_of_angle(text)
-    }
-
-    /// What a line above the table says that the numbers 1 and 2 are.
-    fn key_of_numbers(&self) -> Option<[Direction; 2]> {
-        let other = self.header.other.iter().map(|(name, value)| format!("{name} = {value}"));
-        let stated = self.header.known.get(&HeaderKey::Direction).map(|entry| entry.text.clone());
-        let lines = other.chain(self.header.caption.clone()).chain(stated);
-        let mut key: Vec<(usize, Direction)> =
-            lines.flat_map(|line| numbered::directions(&line, self.context)).collect();
-        key.sort_unstable();
-        key.dedup();
-        match key[..] {
-            [(1, first), (2, second)] if first != second => Some([first, second]),
-            _ => None,
-        }
     }
 
     /// R136: a value without a direction beside one of the same parameter and fabric with one.

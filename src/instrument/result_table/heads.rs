@@ -64,6 +64,9 @@ impl Heads {
                 let cell = cell.or_else(spread).unwrap_or_else(empty);
                 cells.push(cell);
             }
+            if !region.down && !lowest {
+                spread_title(&mut cells, head, words[k + 1], context);
+            }
             let lettered = letters::in_heads(head, context.vocabulary);
             letter_texts.extend(lettered.iter().filter_map(|(i, _)| Some(cells.get(*i)?.1.clone())));
             for (i, facets) in lettered {
@@ -151,6 +154,28 @@ impl Heads {
         }
         let default = region.heads.last().map_or((0, 0), |h| (h.line, h.column(index)));
         (all, names.join(" "), place.unwrap_or(default))
+    }
+}
+
+/// `Bending rigidity (gf·cm²/cm)` alone over `Fabric,Warp,Weft`: it stands over the directions, statistics and numbers below it.
+fn spread_title(cells: &mut [Head], head: &Row<'_>, below: &Row<'_>, context: &Context<'_>) {
+    let Some(title) = cells.first().filter(|(says, ..)| says.names_value() && says.meta.is_none()).cloned()
+    else {
+        return;
+    };
+    let heads_names = below.get(0).is_none_or(|text| context.facets(text).meta.is_some());
+    if head.filled().count() > 1 || !heads_names {
+        return;
+    }
+    let mut is_over = false;
+    for (index, cell) in cells.iter_mut().enumerate() {
+        let says = below.get(index).map(|text| context.facets(text));
+        // A direction reaches over the columns behind it.
+        is_over = match says {
+            Some(says) => says.direction.is_some() || says.statistic.is_some() || says.index.is_some(),
+            None => is_over && index > 0,
+        };
+        *cell = if is_over { title.clone() } else { (Facets::default(), String::new(), title.2) };
     }
 }
 
