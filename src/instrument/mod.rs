@@ -61,6 +61,7 @@ pub mod picture;
 mod raw;
 mod read;
 mod result_table;
+mod row_kind;
 mod row_names;
 mod sample_cells;
 mod samples;

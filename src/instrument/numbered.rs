@@ -6,7 +6,7 @@ use super::dialect::HeaderKey;
 use super::facets;
 use super::header::Header;
 use super::raw::Row;
-use super::shape::is_value;
+use super::row_kind::is_value;
 
 /// Whether the numbers of a row are 1, 2, 3, once or again and again: those of specimens below one direction after the other.
 pub(super) fn counts(row: &Row<'_>, context: &Context<'_>) -> bool {

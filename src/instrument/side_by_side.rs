@@ -32,9 +32,13 @@ pub(super) fn stacked<'r>(rows: &'r [Row<'_>], context: &Context<'_>) -> Option<
     out
 }
 
+/// Rows of a block in which its heads are looked for.
+const HEADS: usize = 5;
+
 /// The columns of each table, where the first head stands again behind a column that is empty all along.
 fn tables(rows: &[Row<'_>], context: &Context<'_>) -> Vec<Range<usize>> {
-    rows.iter().map(|row| tables_below(row, rows, context)).find(|found| found.len() > 1).unwrap_or_default()
+    let heads = rows.iter().take(HEADS);
+    heads.map(|row| tables_below(row, rows, context)).find(|found| found.len() > 1).unwrap_or_default()
 }
 
 fn tables_below(heads: &Row<'_>, rows: &[Row<'_>], context: &Context<'_>) -> Vec<Range<usize>> {

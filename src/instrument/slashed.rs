@@ -8,6 +8,9 @@ use super::raw::{Cell, Row};
 use super::sniff::{Number, number};
 use super::value::is_gap;
 
+/// Rows below a head in which there are two numbers in a cell, if there are at all.
+const NEXT: usize = 4;
+
 /// The rows with a column for each of the two directions; none where no head names two.
 pub(super) fn apart<'r>(rows: &'r [Row<'_>], context: &Context<'_>) -> Option<Vec<Row<'r>>> {
     let mut out: Option<Vec<Row<'r>>> = None;
@@ -15,6 +18,11 @@ pub(super) fn apart<'r>(rows: &'r [Row<'_>], context: &Context<'_>) -> Option<Ve
         // From the right, so that columns further left keep their places.
         for index in (0..row.cells.len()).rev() {
             let Some(heads) = heads(&row.cells[index].text, context) else { continue };
+            // Every row may say `warp/weft`, and not each of them is to be compared with all below.
+            let mut next = rows[at + 1..].iter().take(NEXT).filter_map(|row| row.get(index));
+            if !next.any(|cell| halves(cell, context).is_some()) {
+                continue;
+            }
             let below = rows[at + 1..].iter().take_while(|row| !row.is_blank());
             let end = at + 1 + below.count();
             if !are_apart(&rows[at + 1..end], index, context) {
@@ -35,6 +43,10 @@ pub(super) fn apart<'r>(rows: &'r [Row<'_>], context: &Context<'_>) -> Option<Ve
 
 /// A head that names two directions with a slash between them, once with each.
 fn heads(text: &str, context: &Context<'_>) -> Option<[String; 2]> {
+    // Most cells are numbers.
+    if text.starts_with(|c: char| c.is_ascii_digit() || c == '-') {
+        return None;
+    }
     text.match_indices('/').find_map(|(slash, _)| {
         let [first, second] = words_beside(text, slash);
         let directions =
@@ -63,9 +75,8 @@ fn words_beside(text: &str, slash: usize) -> [Range<usize>; 2] {
 /// Whether a column has two numbers in each cell that holds anything, apart from units.
 fn are_apart(rows: &[Row<'_>], index: usize, context: &Context<'_>) -> bool {
     let mut cells = rows.iter().filter_map(|row| row.get(index)).filter(|cell| !is_gap(cell));
-    let any = cells.clone().any(|cell| halves(cell, context).is_some());
     // Units have no digits, or stand below both heads.
-    any && cells.all(|cell| !cell.contains(|c: char| c.is_ascii_digit()) || halves(cell, context).is_some())
+    cells.all(|cell| !cell.contains(|c: char| c.is_ascii_digit()) || halves(cell, context).is_some())
 }
 
 fn halves<'c>(cell: &'c str, context: &Context<'_>) -> Option<[&'c str; 2]> {

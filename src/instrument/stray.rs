@@ -3,7 +3,8 @@
 use super::context::Context;
 use super::lines;
 use super::raw::Row;
-use super::shape::{is_value_of, row_label};
+use super::row_kind::is_value_of;
+use super::shape::row_label;
 use super::sniff::{Number, number};
 use super::unit_text::split_unit;
 use crate::finding::{Finding, Place, ReadFact};

@@ -6,7 +6,7 @@ use super::context::Context;
 use super::dialect::Role;
 use super::error::{ReadError, ReadProblem};
 use super::raw::Row;
-use super::shape;
+use super::row_kind::is_value;
 use super::unit_text::{is_angular, split_unit, unit};
 use super::vocabulary::Vocabulary;
 use super::words::folded;
@@ -31,7 +31,7 @@ fn has_value(row: &Row<'_>, context: &Context<'_>) -> bool {
     row.filled().any(|(_, cell)| {
         let begins =
             cell.text.starts_with(|c: char| c.is_ascii_digit()) && cell.text.contains(context.decimal);
-        begins || shape::is_value(&cell.text, context)
+        begins || is_value(&cell.text, context)
     })
 }
 
