@@ -73,7 +73,7 @@ impl Sheet {
         let sheet = evaluate(&input, settings);
         let (path, name) = (input.path.clone(), sheet.name.clone());
         let made = Made::Measured { input, how: how.clone(), name, renamed: Vec::new() };
-        Self { made, evaluated: Arc::new(Evaluated { path, sheet }) }
+        Self { made, evaluated: Arc::new(Evaluated::of_sheet(path, sheet)) }
     }
 
     fn written(text: String) -> Result<Vec<Self>, Failure> {
@@ -85,7 +85,7 @@ impl Sheet {
         let made = Made::Written { text };
         let with_origin = |sheet| Self {
             made: made.clone(),
-            evaluated: Arc::new(Evaluated { path: PathBuf::new(), sheet }),
+            evaluated: Arc::new(Evaluated::of_sheet(PathBuf::new(), sheet)),
         };
         Ok(sheets.into_iter().map(with_origin).collect())
     }
@@ -108,7 +108,7 @@ impl Sheet {
         let mut sheet = evaluate(input, &how.settings()?);
         sheet.name.clone_from(name);
         sheet.findings.extend(renamed.iter().cloned());
-        Ok(Arc::new(Evaluated { path: input.path.clone(), sheet }))
+        Ok(Arc::new(Evaluated::of_sheet(input.path.clone(), sheet)))
     }
 
     fn sheet(&self) -> &FabricSheet {
@@ -250,7 +250,7 @@ impl Sheet {
         if let Made::Measured { name: own, renamed, .. } = &mut self.made {
             (*own, *renamed) = (name, new);
         }
-        Self { evaluated: Arc::new(Evaluated { path, sheet }), ..self }
+        Self { evaluated: Arc::new(Evaluated::of_sheet(path, sheet)), ..self }
     }
 }
 
@@ -340,7 +340,7 @@ fn distinguished(sheets: Vec<Sheet>) -> Vec<Sheet> {
         .iter()
         .map(|s| {
             let sheet = FabricSheet { name: s.sheet().name.clone(), ..FabricSheet::default() };
-            Evaluated { path: s.evaluated.path.clone(), sheet }
+            Evaluated::of_sheet(s.evaluated.path.clone(), sheet)
         })
         .collect();
     distinguish_fabrics(&mut named);

@@ -122,7 +122,7 @@ fn given(case: &Case, cloth: &Cloth) -> Result<(Arc<Fabric>, Option<Constitutive
         }
         Cloth::Section(section) => {
             let sectioned = section.get().sectioned();
-            let fabric = Fabric { path: sectioned.path.clone(), sheet: sectioned.sheet.clone() };
+            let fabric = Fabric::of_sheet(sectioned.path.clone(), sectioned.sheet.clone());
             Ok((Arc::new(fabric), Some(sectioned.made.clone())))
         }
     }

@@ -233,6 +233,7 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
         F::StandsApart { key, .. }
         | F::NoRepeats { key, .. }
         | F::Implausible { key, .. }
+        | F::StatedDiffers { key, .. }
         | F::TableDiffers { key, .. } => (Scope::Value(*key), Doubtful),
         F::NotTogether { keys, .. } => (Scope::Values(keys), Doubtful),
         F::OtherDirection { parameter, own, .. } => (value(*parameter, Some(*own)), Doubtful),

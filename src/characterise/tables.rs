@@ -11,6 +11,8 @@ use crate::quantity::Estimate;
 
 /// Difference between a table and the curves that is reported.
 const DISAGREEMENT: f64 = 0.05;
+/// The same of a thickness, which depends on the pressure: T0 and Tm of soft cloth lie so far apart.
+const OTHER_PRESSURE: f64 = 0.5;
 
 /// Adds table values to the sheet. What was evaluated from curves stays; where the two differ, both are told.
 pub(super) fn merge(sheet: &mut FabricSheet, input: &FabricInput, settings: &Settings) {
@@ -81,6 +83,7 @@ fn together(values: &[&ResultValue]) -> Option<Estimate> {
 pub(super) fn metadata(sheet: &mut FabricSheet, input: &FabricInput) {
     let key = |parameter| Key { parameter, direction: None };
     if let Some(w) = input.info.areal_density {
+        tell_another(sheet, key(Parameter::W), w, DISAGREEMENT);
         sheet.values.entry(key(Parameter::W)).or_insert_with(|| Estimate::single(w));
     } else if !sheet.values.contains_key(&key(Parameter::W)) {
         sheet.findings.push(Finding::new(EvaluationFact::NoArealDensity {}));
@@ -88,6 +91,16 @@ pub(super) fn metadata(sheet: &mut FabricSheet, input: &FabricInput) {
     if let (Some(t), false) = (input.info.thickness, sheet.values.contains_key(&key(Parameter::T0))) {
         sheet.findings.push(Finding::new(EvaluationFact::StatedThickness {}));
         sheet.values.insert(key(Parameter::T0), Estimate::single(t));
+    } else if let Some(t) = input.info.thickness {
+        tell_another(sheet, key(Parameter::T0), t, OTHER_PRESSURE);
+    }
+}
+
+/// K069: `fabric.toml` says another value than the files, which are used.
+fn tell_another(sheet: &mut FabricSheet, key: Key, stated: f64, tolerance: f64) {
+    let Some(value) = sheet.values.get(&key).map(|e| e.mean) else { return };
+    if (stated - value).abs() > tolerance * value.abs() {
+        sheet.findings.push(Finding::new(EvaluationFact::StatedDiffers { key, stated, value }));
     }
 }
 

@@ -83,7 +83,7 @@ fn problems(fabrics: &[Fabric], failures: &[Failure]) -> Vec<ProblemRow> {
 fn tell_findings(fabrics: &[Fabric], ui: &Ui) {
     let shared = paths_of_several(fabrics);
     ui.observe(|observer| {
-        for Fabric { path, sheet } in fabrics {
+        for Fabric { path, sheet, .. } in fabrics {
             let fabric = shared.contains(path).then_some(sheet.name.as_str());
             for finding in &sheet.findings {
                 (observer.event)(Event::Found(Found { finding, fabric, of_batch: false }));

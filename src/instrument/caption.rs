@@ -9,9 +9,12 @@ use super::words::{folded, normalised};
 
 /// Names of a spread that a sheet has for something else.
 const NAMES: [&str; 4] = ["sigma", "error", "dev", "err"];
-/// Words before the head of a title, `Relative changes`, and those of a phrase.
+/// Most words before the head of a title, `Relative changes`.
 const BEFORE: usize = 3;
+/// Most words of a phrase.
 const PHRASE: usize = 4;
+/// Most letters of the ending of an adjective.
+const ENDING: usize = 2;
 
 /// Whether a line over a table says that its numbers are no values.
 pub(super) fn is_of_no_values(text: &str, v: Vocabulary<'_>) -> bool {
@@ -24,8 +27,9 @@ pub(super) fn is_of_no_values(text: &str, v: Vocabulary<'_>) -> bool {
     let is_amount = rest.contains(|c: char| c.is_ascii_digit());
     let mut has_percent =
         head.contains('%') || (!is_amount && (rest.contains('%') || names_percent(rest, v)));
-    let words = words_of(head);
-    let means: Vec<Option<TitleWord>> = words.iter().map(|word| v.title_word(word)).collect();
+    let head = head.replace("'s ", " ").replace("’s ", " ");
+    let words = words_of(&head);
+    let means: Vec<Option<TitleWord>> = words.iter().map(|word| meaning(word, v)).collect();
     if means.contains(&Some(TitleWord::Verb)) {
         return false;
     }
@@ -38,7 +42,7 @@ pub(super) fn is_of_no_values(text: &str, v: Vocabulary<'_>) -> bool {
         is_head &= at == 0 || matches!(means[at - 1], Some(TitleWord::Percent | TitleWord::Qualifier));
         for n in 1..=PHRASE.min(words.len() - at) {
             let next = words.get(at + n).map(|_| means[at + n]);
-            // `Standard deviations in brackets` is a remark on values.
+            // `Standard deviations in brackets` and `… shown in brackets` are remarks on values.
             let says_where = means.get(at + n + 1) == Some(&Some(TitleWord::Place));
             let leads_on = next.is_none_or(|word| {
                 matches!(word, Some(TitleWord::Of | TitleWord::With | TitleWord::Percent))
@@ -54,7 +58,27 @@ pub(super) fn is_of_no_values(text: &str, v: Vocabulary<'_>) -> bool {
             }
         }
     }
-    ends_with_comparison(head, v)
+    ends_with_comparison(&head, v)
+}
+
+/// What a word says; a capital letter alone is a name, `Fabric A` and `Type I`, and an ending may be one of an adjective:
+/// `relativen`.
+fn meaning(word: &str, v: Vocabulary<'_>) -> Option<TitleWord> {
+    let is_name = word.chars().nth(1).is_none() && word.chars().all(char::is_uppercase);
+    let whole = v.title_word(word).filter(|_| !is_name);
+    whole.or_else(|| {
+        let ends = word.char_indices().rev().take(ENDING).filter(|(at, _)| *at > PHRASE);
+        let mut stems = ends.filter_map(|(at, _)| v.title_word(&word[..at]));
+        stems.find(|found| matches!(found, TitleWord::Percent | TitleWord::Qualifier))
+    })
+}
+
+/// Whether a line says what stands in brackets, and that it is no spread: `Weft values in brackets`.
+pub(super) fn says_what_is_in_brackets(text: &str, v: Vocabulary<'_>) -> bool {
+    let words = words_of(text);
+    let mut phrases = (1..=PHRASE).flat_map(|n| words.windows(n)).map(|words| words.join(" "));
+    words.iter().any(|word| v.title_word(word) == Some(TitleWord::Place))
+        && !phrases.any(|phrase| is_spread(&phrase, v) || v.statistic(&phrase) == Some(Statistic::Spread))
 }
 
 /// The same of the name of a sheet: only as its first or last words, `cotton_SD`; `Mean and SD` holds values.
@@ -63,7 +87,7 @@ fn is_name_of_no_values(name: &str, v: Vocabulary<'_>) -> bool {
     let words = words_of(&name);
     let ends = (1..=PHRASE.min(words.len())).flat_map(|n| [&words[..n], &words[words.len() - n..]]);
     !names_mean(&words, v)
-        && !words.iter().any(|word| matches!(v.title_word(word), Some(TitleWord::And | TitleWord::With)))
+        && !words.iter().any(|word| matches!(meaning(word, v), Some(TitleWord::And | TitleWord::With)))
         && ends.into_iter().map(|phrase| phrase.join(" ")).any(|phrase| {
             !NAMES.contains(&normalised(&phrase).as_str()) && is_of_comparison(&phrase, false, v)
         })
@@ -88,7 +112,7 @@ fn names_mean(words: &[&str], v: Vocabulary<'_>) -> bool {
 
 /// Whether some word of a text says that numbers are in per cent.
 fn names_percent(text: &str, v: Vocabulary<'_>) -> bool {
-    words_of(text).iter().any(|word| v.title_word(word) == Some(TitleWord::Percent))
+    words_of(text).iter().any(|word| meaning(word, v) == Some(TitleWord::Percent))
 }
 
 fn is_of_comparison(phrase: &str, in_percent: bool, v: Vocabulary<'_>) -> bool {
@@ -112,7 +136,7 @@ fn ends_with_comparison(head: &str, v: Vocabulary<'_>) -> bool {
 }
 
 /// `Table A2: …` and `Tab. 3 …` without what numbers it.
-fn without_number<'t>(text: &'t str, v: Vocabulary<'_>) -> &'t str {
+pub(super) fn without_number<'t>(text: &'t str, v: Vocabulary<'_>) -> &'t str {
     let mut parts = text.splitn(3, |c: char| c.is_whitespace() || matches!(c, ':' | '.'));
     let first = parts.next().unwrap_or_default();
     let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
@@ -191,6 +215,11 @@ mod tests {
             "Percent retention",
             "Percent retention of B after washing",
             "Pearson's r",
+            "Fabric A standard deviations",
+            "Type I standard deviations",
+            "Student's t values",
+            "Relativen Änderungen (%)",
+            "Prozentuelle Änderung",
             "Measurement uncertainty",
             "Table 4. Expanded uncertainty (k = 2)",
             "Minimum values",

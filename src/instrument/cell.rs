@@ -197,7 +197,11 @@ pub(super) fn beginning(cell: &str) -> Option<&str> {
         return None;
     }
     let behind = behind.trim();
-    (behind.starts_with('±') || is_unit(folded(behind).as_ref())).then_some(before)
+    // `0,081/0,062`; `1/2` decides nothing.
+    let is_pair = behind
+        .strip_prefix('/')
+        .is_some_and(|other| other.trim().contains(['.', ',']) && other.trim().chars().all(in_number));
+    (behind.starts_with('±') || is_pair || is_unit(folded(behind).as_ref())).then_some(before)
 }
 
 #[cfg(test)]
@@ -265,6 +269,7 @@ mod tests {
         assert_eq!(beginning("0,081 gf.cm2/cm"), Some("0,081"));
         assert_eq!(beginning("0,081 ± 0,003 mm"), Some("0,081"));
         assert_eq!(beginning("%4,2"), Some("4,2"));
+        assert_eq!(beginning("0,081/0,062"), Some("0,081"));
         assert_eq!(beginning("12 oz denim"), None);
         assert_eq!(beginning("10:31"), None);
     }

@@ -127,11 +127,11 @@ pub enum TitleWord {
     Of,
     /// The title names more than one thing: `and`.
     And,
-    /// Either of these two: `with`.
+    /// It leads on, or names one thing more: `with`.
     With,
     /// A remark has it, and no title: `are`.
     Verb,
-    /// Where deviations stand that a remark speaks of: `in brackets`.
+    /// Where deviations stand that a remark speaks of, behind one more word: `in brackets`.
     Place,
 }
 

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::finding::{Coded, Fields, Place, fields_of};
+use crate::finding::{Coded, Fields, Finding, Place, ReadFact, fields_of};
 
 /// A file, or a place in it, that cannot be read. One error never concerns more than one file.
 ///
@@ -33,6 +33,12 @@ impl ReadError {
     /// A problem at a place.
     pub fn new(place: Place, problem: ReadProblem) -> Self {
         Self { place, problem, about: Box::default() }
+    }
+
+    /// R123: what is told of a table beside others that is not understood.
+    pub(super) fn not_understood(self) -> Finding {
+        let fact = ReadFact::SheetNotUnderstood { reason: self.problem.to_string() };
+        Finding::new(fact).at(self.place)
     }
 
     /// The stable code, e.g. `R004`; see [`crate::finding::explain`].

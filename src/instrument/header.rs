@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::Direction;
 use super::dialect::HeaderKey;
 
 /// A header value and where it stands.
@@ -19,16 +20,8 @@ pub(super) struct Header {
     pub other: BTreeMap<String, String>,
     /// The last line of words alone since the record before.
     pub caption: Option<String>,
-    /// Lines below a table that are not known above it, `name = value`.
-    pub below: Vec<String>,
+    /// What 1 and 2 are, where a line below the table says it: `1 = weft, 2 = warp`.
+    pub key_below: Option<[Direction; 2]>,
     /// The number of repeats that a line since the table before states: `Mean values, n = 5`.
     pub repeats: Option<usize>,
-}
-
-impl Header {
-    /// Keeps the lines that stand below, as the header at the end of the file has them.
-    pub fn note_below(&mut self, end: &Self) {
-        let new = end.other.iter().filter(|(name, _)| !self.other.contains_key(*name));
-        self.below = new.map(|(name, value)| format!("{name} = {value}")).collect();
-    }
 }

@@ -12,6 +12,7 @@ use super::layout::{Column, Pair};
 use super::raw::Row;
 use super::sniff::{Number, number};
 use super::written_direction::{self, Written};
+use crate::finding::ReadFact;
 
 /// Fewest rows of a record: what changes sooner counts samples.
 const ROWS: usize = 10;
@@ -28,14 +29,14 @@ pub(super) struct KeyColumn {
 }
 
 /// What an entry says of its record beside telling it from others.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Names {
     Nothing,
     Itself,
-    /// A state of the fabric under a head that is not known, `washed`, or a number with that head before it, `lot 2`.
-    State(String),
-    /// Fabric, direction and specimen in one: `Cotton_warp_1`.
+    /// Fabric, direction and specimen in one, `Cotton_warp_1`, where no other column has them.
     Label,
+    /// A state of the fabric under a head that is not known, `washed`, behind its name.
+    State,
 }
 
 /// The records that rows hold, each with the columns of its curves.
@@ -50,22 +51,33 @@ pub(super) fn columns(
     context: &Context<'_>,
 ) -> Vec<KeyColumn> {
     let mut found: Vec<(KeyColumn, BTreeSet<&str>)> = Vec::new();
-    if rows.is_empty() {
+    let has_others = heading.filled().any(|(i, _)| curves.iter().all(|column| column.index != i));
+    if rows.is_empty() || !has_others {
         return Vec::new();
     }
+    let has_directions = heading
+        .filled()
+        .any(|(_, cell)| context.vocabulary.table_column(&cell.text) == Some(TableColumn::Direction));
+    let abscissa = curves.iter().find(|column| column.role.is_abscissa());
+    let values: Vec<f64> = abscissa
+        .map_or_else(Vec::new, |column| rows.iter().map(|row| value(row, column, context.decimal)).collect());
     for (index, cell) in heading.filled().filter(|(i, _)| curves.iter().all(|column| column.index != *i)) {
-        let Some(entries) = entries_below(index, rows) else { continue };
-        let entries: BTreeSet<&str> = entries.into_iter().collect();
+        let Some(of_rows) = entries_below(index, rows) else { continue };
+        let entries: BTreeSet<&str> = of_rows.iter().copied().collect();
         if entries.len() * ROWS > rows.len() {
             continue;
         }
-        let Some(column) = column(index, &cell.text, &entries, header, context) else { continue };
-        let is_one_record = match (&column.names, column.key) {
-            (Names::State(_), _) => !begin_anew(index, curves, rows, context),
+        let Some(mut column) = column(index, &cell.text, &entries, header, context) else { continue };
+        if has_directions && column.names == Names::Label {
+            column.names = Names::Itself;
+        }
+        let runs = Runs { entries: &of_rows, values: &values };
+        let is_no_key = match (column.names, column.key) {
+            (Names::State, _) => !runs.are_alike(),
             (_, HeaderKey::Direction) => false,
-            _ => parts_of_one(index, curves, rows, context),
+            _ => runs.are_parts_of_one(),
         };
-        if !is_one_record {
+        if !is_no_key {
             found.push((column, entries));
         }
     }
@@ -89,12 +101,12 @@ pub(super) fn columns(
         let mut others = columns
             .iter()
             .enumerate()
-            .filter(|(i, column)| *i != at && column.key == key && !column.is_of_states());
+            .filter(|(i, column)| *i != at && column.key == key && column.is_its_key());
         let is_first = match key {
             HeaderKey::Specimen => others.next().is_none(),
             _ => others.all(|(other, _)| at < other),
         };
-        if !is_first && !columns[at].is_of_states() {
+        if !is_first && columns[at].is_its_key() {
             columns[at].names = Names::Nothing;
         }
     }
@@ -131,9 +143,7 @@ fn column(
             let column = KeyColumn::new(index, HeaderKey::Direction, Names::Itself);
             Some(KeyColumn { directions: Some(directions), ..column })
         }
-        Some(TableColumn::Fabric | TableColumn::Id)
-            if entries.iter().all(|text| Label::parse(text, v).direction.is_some()) =>
-        {
+        Some(TableColumn::Id) if entries.iter().all(|text| is_label(text, context)) => {
             Some(KeyColumn::new(index, HeaderKey::Sample, Names::Label))
         }
         Some(TableColumn::Fabric | TableColumn::Id) => {
@@ -143,43 +153,26 @@ fn column(
             .iter()
             .all(|text| has_number(text) || text.chars().all(char::is_alphabetic))
             .then(|| KeyColumn::new(index, HeaderKey::Specimen, Names::Itself)),
-        None => {
-            let before = states(head, entries, context)?;
-            Some(KeyColumn::new(index, HeaderKey::Sample, Names::State(before)))
+        None if are_states(head, entries, context) => {
+            Some(KeyColumn::new(index, HeaderKey::Sample, Names::State))
         }
         _ => None,
     }
 }
 
-/// What stands before the states in a column that nothing is known of: nothing before words, `treatment` with `raw` and `washed`, and the
-/// head before numbers, `lot` with 1 and 2. None where its entries may be something else.
-fn states(head: &str, entries: &BTreeSet<&str>, context: &Context<'_>) -> Option<String> {
-    let v = context.vocabulary;
-    let role = context.column_name(head).role;
-    if entries.len() < 2
-        || v.key(head) == Some(HeaderKey::Circumstance)
-        || !matches!(role, None | Some(Role::Ignored))
-    {
-        return None;
-    }
-    if entries.iter().all(|text| text.starts_with(char::is_alphabetic) && v.direction(text).is_none()) {
-        return Some(String::new());
-    }
-    // Points and cycles are counted under heads that are known.
-    let are_numbers = role.is_none() && entries.iter().all(|text| text.parse::<usize>().is_ok());
-    are_numbers.then(|| format!("{} ", head.trim()))
+/// Whether a text is fabric, direction and specimen in one, and nothing else.
+fn is_label(text: &str, context: &Context<'_>) -> bool {
+    let label = Label::parse(text, context.vocabulary);
+    label.direction.is_some() && label.rest.is_empty()
 }
 
-/// Whether a run begins about where the first one does whenever a column changes: another record, and no part of one.
-fn begin_anew(index: usize, curves: &[Column], rows: &[&Row<'_>], context: &Context<'_>) -> bool {
-    let Some(abscissa) = curves.iter().find(|column| column.role.is_abscissa()) else { return false };
-    let values: Vec<f64> = rows.iter().map(|row| value(row, abscissa, context.decimal)).collect();
-    let (low, high) =
-        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
-    rows.windows(2).zip(&values[1..]).all(|(pair, x)| {
-        let changes = pair[1].get(index).is_some_and(|text| Some(text) != pair[0].get(index));
-        !changes || (x - values[0]).abs() <= 0.1 * (high - low)
-    })
+/// Whether a column that nothing is known of may have states of fabrics: words, `treatment` with `raw` and `washed`.
+fn are_states(head: &str, entries: &BTreeSet<&str>, context: &Context<'_>) -> bool {
+    let v = context.vocabulary;
+    entries.len() > 1
+        && v.key(head) != Some(HeaderKey::Circumstance)
+        && matches!(context.column_name(head).role, None | Some(Role::Ignored))
+        && entries.iter().all(|text| text.contains(char::is_alphabetic) && v.direction(text).is_none())
 }
 
 /// Whether a text has a number from 1.
@@ -187,26 +180,44 @@ fn has_number(text: &str) -> bool {
     text.contains(|c: char| ('1'..='9').contains(&c))
 }
 
-/// Whether numbers tell the way there from the way back: a run begins where the one above ended, far from where that began.
-fn parts_of_one(index: usize, curves: &[Column], rows: &[&Row<'_>], context: &Context<'_>) -> bool {
-    let Some(abscissa) = curves.iter().find(|column| column.role.is_abscissa()) else { return false };
-    let decimal = context.decimal;
-    let (low, high) = rows
-        .iter()
-        .map(|row| value(row, abscissa, decimal))
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-    let mut first = value(rows[0], abscissa, decimal);
-    for pair in rows.windows(2) {
-        if pair[1].get(index).is_none_or(|text| Some(text) == pair[0].get(index)) {
-            continue;
-        }
-        let (end, next) = (value(pair[0], abscissa, decimal), value(pair[1], abscissa, decimal));
-        if (end - first).abs() > 0.5 * (high - low) && (next - end).abs() < 0.1 * (high - low) {
-            return true;
-        }
-        first = next;
+/// What a column says of each row, and the abscissa of each.
+struct Runs<'r> {
+    entries: &'r [&'r str],
+    values: &'r [f64],
+}
+
+impl Runs<'_> {
+    /// The first row of each run of one entry, and the end.
+    fn starts(&self) -> Vec<usize> {
+        let changes = self.entries.windows(2).enumerate().filter(|(_, pair)| pair[0] != pair[1]);
+        [0].into_iter().chain(changes.map(|(at, _)| at + 1)).chain([self.entries.len()]).collect()
     }
-    false
+
+    /// Whether entries tell the way there from the way back: a run begins where the one above ended, far from where that began.
+    fn are_parts_of_one(&self) -> bool {
+        let (low, high) = range(self.values);
+        let starts = self.starts();
+        starts.windows(3).any(|at| {
+            let [first, end, next] =
+                [at[0], at[1] - 1, at[1]].map(|i| self.values.get(i).unwrap_or(&f64::NAN));
+            (end - first).abs() > 0.5 * (high - low) && (next - end).abs() < 0.1 * (high - low)
+        })
+    }
+
+    /// Whether every run begins about where the first one does and goes as far: another record, and no part of one.
+    fn are_alike(&self) -> bool {
+        let (low, high) = range(self.values);
+        self.starts().windows(2).all(|at| {
+            let Some(run) = self.values.get(at[0]..at[1]).filter(|run| !run.is_empty()) else { return false };
+            let (least, most) = range(run);
+            let apart = [run[0] - self.values[0], least - low, most - high];
+            apart.iter().all(|x| x.abs() <= 0.2 * (high - low))
+        })
+    }
+}
+
+fn range(values: &[f64]) -> (f64, f64) {
+    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)))
 }
 
 fn value(row: &Row<'_>, column: &Column, decimal: char) -> f64 {
@@ -242,12 +253,15 @@ pub(super) fn records<'t>(
     // A state goes with the name in the header, where no column has one.
     let has_name = keys.iter().any(|column| column.key == HeaderKey::Sample && !column.is_of_states());
     let stated = pairs.first().and_then(|pair| pair.header.known.get(&HeaderKey::Sample)).cloned();
-    let name = stated.filter(|_| !has_name && keys.iter().any(KeyColumn::is_of_states));
+    let of_file = context.label.sample.clone().map(|text| Entry { text, line: 0, column: 0 });
+    let name = stated.or(of_file).filter(|_| !has_name && keys.iter().any(KeyColumn::is_of_states));
     let mut records = Vec::new();
     for (entries, rows) in of_entries {
         let mut known: Vec<(HeaderKey, Entry)> =
             name.iter().map(|entry| (HeaderKey::Sample, entry.clone())).collect();
-        for (column, text) in keys.iter().zip(entries) {
+        let mut columns: Vec<_> = keys.iter().zip(entries).collect();
+        columns.sort_by_key(|(column, _)| column.names);
+        for (column, text) in columns {
             column.name_record(text, rows[0], context, &mut known);
         }
         let mut pairs = pairs.clone();
@@ -264,9 +278,22 @@ impl KeyColumn {
         Self { index, key, directions: None, names }
     }
 
+    /// Whether its entries are what its key says, and that alone.
+    pub fn is_its_key(&self) -> bool {
+        matches!(self.names, Names::Itself | Names::Nothing)
+    }
+
+    /// R151, if its entries are states.
+    pub fn states_told(&self, head: &str, rows: &[&Row<'_>]) -> Option<ReadFact> {
+        let entries = entries_below(self.index, rows).filter(|_| self.is_of_states())?;
+        let entries: BTreeSet<&str> = entries.into_iter().collect();
+        let entries = entries.into_iter().map(str::to_string).collect();
+        Some(ReadFact::StatesAsFabrics { column: head.trim().to_string(), entries })
+    }
+
     /// Whether its entries are states of a fabric, and not its name.
-    pub fn is_of_states(&self) -> bool {
-        matches!(self.names, Names::State(_))
+    fn is_of_states(&self) -> bool {
+        self.names == Names::State
     }
 
     /// Adds what an entry calls its record to what other columns do.
@@ -277,9 +304,8 @@ impl KeyColumn {
         context: &Context<'_>,
         known: &mut Vec<(HeaderKey, Entry)>,
     ) {
-        let names: Vec<(HeaderKey, String)> = match &self.names {
+        let names: Vec<(HeaderKey, String)> = match self.names {
             Names::Nothing => Vec::new(),
-            Names::State(before) => vec![(self.key, format!("{before}{text}"))],
             Names::Label => {
                 let label = Label::parse(text, context.vocabulary);
                 let sample = label.sample.map(|name| (HeaderKey::Sample, name));
@@ -287,15 +313,15 @@ impl KeyColumn {
                 let specimen = label.specimen.map(|n| (HeaderKey::Specimen, n.to_string()));
                 [sample, direction, specimen].into_iter().flatten().collect()
             }
-            Names::Itself => {
+            Names::Itself | Names::State => {
                 let direction = self.directions.as_ref().and_then(|(_, of_texts)| of_texts.get(text));
                 vec![(self.key, direction.map_or_else(|| text.to_string(), Direction::to_string))]
             }
         };
         for (key, text) in names {
             match known.iter_mut().find(|(other, _)| *other == key) {
-                // Name and state, in the order of their columns.
-                Some((_, entry)) => entry.text = format!("{} {text}", entry.text),
+                Some((_, entry)) if self.is_of_states() => entry.text = format!("{} {text}", entry.text),
+                Some(_) => {}
                 None => known.push((key, Entry { text, line: row.line, column: row.column(self.index) })),
             }
         }

@@ -3,7 +3,7 @@
 //! Blocks may be stacked (each with its own header lines, which override those before) and stand
 //! side by side (column pairs under one heading row, told apart by rows above the headings).
 
-use super::caption::{is_number_of_table, is_numbered};
+use super::caption::{is_number_of_table, is_numbered, is_of_no_values};
 use super::column_name::ColumnName;
 use super::context::Context;
 use super::dialect::{HeaderKey, Role};
@@ -61,6 +61,18 @@ pub(super) enum Block<'t> {
     Table { header: Header, region: Region<'t> },
 }
 
+impl Block<'_> {
+    /// Its first and its last line.
+    fn lines(&self) -> (usize, usize) {
+        let (heads, rows): (&[&Row<'_>], _) = match self {
+            Self::Curves { rows, .. } => (&[], rows),
+            Self::Table { region, .. } => (&region.heads, &region.rows),
+        };
+        let first = heads.first().or(rows.first()).map_or(0, |row| row.line);
+        (first, rows.last().map_or(first, |row| row.line))
+    }
+}
+
 /// Splits rows into blocks, with what was noticed on the way.
 ///
 /// # Errors
@@ -89,6 +101,8 @@ pub(super) fn blocks<'t>(
     // where nothing else was read.
     let (mut unread, mut behind, mut stray, mut above) = (None, Vec::new(), Vec::new(), Vec::new());
     let mut title_above: Option<&Row<'_>> = None;
+    // The same below a row of words in each of its columns: it is told where something else was read.
+    let mut headed: Option<ReadError> = None;
     while let Some(row) = rows.get(scanner.at) {
         if row.is_blank() {
             above.clear();
@@ -114,7 +128,7 @@ pub(super) fn blocks<'t>(
             title_above = region.title.filter(|row| row.filled().nth(1).is_some());
             blocks.push(Block::Table { header: scanner.header.clone(), region });
             scanner.header.repeats = None;
-        } else if scanner.labels(row) {
+        } else if !numbered::is_key(row, context) && scanner.labels(row) {
             scanner.at += 1;
         } else if let Some(columns) = scanner.columns_above() {
             let (block, part) = scanner.curves(columns)?;
@@ -123,7 +137,11 @@ pub(super) fn blocks<'t>(
             return Err(suggest::unknown_layout(context, row, &words));
         } else {
             if words.len() > 1 && has_numbers(row, context.decimal) {
-                unread.get_or_insert_with(|| suggest::unknown_layout(context, row, &words));
+                let error = suggest::unknown_layout(context, row, &words);
+                if shape::heads_row(&rows[..scanner.at], row, context) {
+                    headed.get_or_insert_with(|| error.clone());
+                }
+                unread.get_or_insert(error);
             }
             if let Some(Block::Table { region, .. }) = blocks.last()
                 && shape::continues(row, region, context)
@@ -143,7 +161,8 @@ pub(super) fn blocks<'t>(
     if blocks.is_empty() {
         return Err(unread.unwrap_or_else(|| suggest::not_read(rows, context)));
     }
-    hand_on_notes(&mut blocks, &scanner);
+    scanner.findings.extend(headed.map(ReadError::not_understood));
+    scanner.hand_on_notes(&mut blocks, unread.is_none());
     let has_table = blocks.iter().any(|block| matches!(block, Block::Table { .. }));
     scanner.findings.extend(Some(stray).filter(|_| has_table).and_then(|stray| stray::apart(stray, context)));
     if let Some(line) = behind.first() {
@@ -151,20 +170,6 @@ pub(super) fn blocks<'t>(
         scanner.findings.push(Finding::new(ReadFact::RowsNotRead { lines: behind }).at(place));
     }
     Ok((blocks, scanner.findings))
-}
-
-/// Gives every table the lines that follow it, and the only block of a file a title with a number below it.
-fn hand_on_notes(blocks: &mut [Block<'_>], end: &Scanner<'_, '_>) {
-    let is_only = blocks.len() == 1;
-    for block in blocks {
-        let Block::Table { header, region } = block else { continue };
-        header.note_below(&end.header);
-        let last = region.rows.last().map_or(0, |row| row.line);
-        if is_only && header.caption.is_none() && end.caption_line > last {
-            let title = end.header.caption.clone();
-            header.caption = title.filter(|title| is_numbered(title, end.context.vocabulary));
-        }
-    }
 }
 
 pub(super) struct Scanner<'t, 'a> {
@@ -187,6 +192,20 @@ pub(super) struct Scanner<'t, 'a> {
 }
 
 impl<'t> Scanner<'t, '_> {
+    /// Gives tables the keys of numbers below them, and the only block of a file that is all understood a title with a number.
+    fn hand_on_notes(&self, blocks: &mut [Block<'_>], is_understood: bool) {
+        let spans: Vec<_> = blocks.iter().map(Block::lines).collect();
+        let keys = numbered::keys_below(&spans, self.rows, self.context);
+        let title = self.header.caption.as_ref().filter(|title| is_numbered(title, self.context.vocabulary));
+        for ((block, key), (_, last)) in blocks.iter_mut().zip(keys).zip(&spans) {
+            let Block::Table { header, .. } = block else { continue };
+            header.key_below = key;
+            if is_understood && spans.len() == 1 && header.caption.is_none() && self.caption_line > *last {
+                header.caption = title.cloned();
+            }
+        }
+    }
+
     /// The columns of a heading row: at least an abscissa and an ordinate.
     pub(super) fn headings(&self, row: &Row<'_>) -> Option<Vec<Column>> {
         let column = |(index, cell): (usize, &super::raw::Cell<'_>)| {
@@ -265,12 +284,13 @@ impl<'t> Scanner<'t, '_> {
         let keys = keyed_rows::columns(heading, &columns, &rows, &self.header, self.context);
         self.note_strange_columns(heading, &columns, &keys, &rows);
         for column in &keys {
-            if !column.is_of_states() {
+            if column.is_its_key() {
                 self.note_entry_in_rows(column, &rows);
             }
             let written = column.directions.as_ref();
             let fact = written.and_then(|(written, of_texts)| written.fact(of_texts.keys().cloned()));
             let place = Place::at(self.context.path, heading.line, heading.column(column.index));
+            let fact = fact.or_else(|| column.states_told(&heading.cells[column.index].text, &rows));
             self.findings.extend(fact.map(|fact| Finding::new(fact).at(place)));
         }
         (self.above, self.tells_another) = (Some(columns.clone()), false);
@@ -431,7 +451,14 @@ impl<'t> Scanner<'t, '_> {
     }
 
     fn keep(&mut self, name: &str, mut values: Vec<(String, usize)>, line: usize) {
-        self.header.repeats = numbered::repeats(name, &values).or(self.header.repeats);
+        if let Some(repeats) = numbered::repeats(name, &values) {
+            self.header.repeats = Some(repeats);
+            // `Standard deviations (n = 5)`.
+            let title = name.trim_end().trim_end_matches(['n', 'N']).trim_end_matches([' ', '(', '[', ',']);
+            if is_of_no_values(title, self.context.vocabulary) {
+                (self.header.caption, self.caption_line) = (Some(title.to_string()), line);
+            }
+        }
         let name = name.trim_start_matches('#');
         let (plain, own_unit) = split_unit(name);
         let plain = bare(&plain);

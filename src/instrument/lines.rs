@@ -28,13 +28,9 @@ pub(super) fn split<'r>(
 fn split_row<'r>(row: &'r Row<'_>, end: Option<usize>) -> Row<'r> {
     let cells = match (end, row.filled().next()) {
         (Some(end), Some((_, cell))) => halves(cell, end, row.in_cells),
-        _ => row.cells.iter().map(borrowed).collect(),
+        _ => row.cells.iter().map(Cell::by_reference).collect(),
     };
     Row { line: row.line, cells, in_cells: row.in_cells }
-}
-
-fn borrowed<'r>(cell: &'r Cell<'_>) -> Cell<'r> {
-    Cell { text: Cow::Borrowed(cell.text.as_ref()), column: cell.column }
 }
 
 /// The name, and the value behind its mark. In a workbook both stand in one cell.

@@ -77,6 +77,7 @@ mod statistic;
 mod status_word;
 mod stray;
 mod suggest;
+mod table_title;
 mod unit_text;
 mod unpacked;
 mod value;

@@ -7,6 +7,7 @@ use super::facets;
 use super::header::Header;
 use super::raw::Row;
 use super::row_kind::is_value;
+use super::vocabulary::Vocabulary;
 
 /// Whether the numbers of a row are 1, 2, 3, once or again and again: those of specimens below one direction after the other.
 pub(super) fn counts(row: &Row<'_>, context: &Context<'_>) -> bool {
@@ -25,12 +26,15 @@ fn directions(text: &str, context: &Context<'_>) -> Vec<(usize, Direction)> {
     if !words.iter().any(|word| ["1", "2"].contains(word)) {
         return Vec::new();
     }
+    let v = context.vocabulary;
     let (mut tokens, mut pairs) = (Vec::new(), Vec::new());
     for word in words {
-        match (word, context.vocabulary.direction_exactly(word)) {
+        match (word, v.direction_exactly(word)) {
             ("1", _) => tokens.push(Err(1)),
             ("2", _) => tokens.push(Err(2)),
             (_, Some(direction)) if word.chars().count() > 1 => tokens.push(Ok(direction)),
+            // `1 = weft rib` is a fabric.
+            _ if !tokens.is_empty() && is_strange(word, v) => return Vec::new(),
             _ => {}
         }
     }
@@ -49,8 +53,28 @@ fn directions(text: &str, context: &Context<'_>) -> Vec<(usize, Direction)> {
 pub(super) fn key_of(header: &Header, context: &Context<'_>) -> Option<[Direction; 2]> {
     let other = header.other.iter().map(|(name, value)| format!("{name} = {value}"));
     let stated = header.known.get(&HeaderKey::Direction).map(|entry| entry.text.clone());
-    key(other.chain(header.caption.clone()).chain(stated), context)
-        .or_else(|| key(header.below.iter().cloned(), context))
+    header.key_below.or_else(|| key(other.chain(header.caption.clone()).chain(stated), context))
+}
+
+/// The key below each block of rows, whose first and last lines are given: only in a file that has one below its last, and none above its
+/// first. Elsewhere a key holds for what follows it.
+pub(super) fn keys_below(
+    blocks: &[(usize, usize)],
+    rows: &[Row<'_>],
+    context: &Context<'_>,
+) -> Vec<Option<[Direction; 2]>> {
+    let mut keys = vec![None; blocks.len() + 1];
+    let mut gap = 0;
+    for row in rows {
+        while blocks.get(gap).is_some_and(|(_, last)| row.line > *last) {
+            gap += 1;
+        }
+        if blocks.get(gap).is_none_or(|(first, _)| row.line < *first) {
+            keys[gap] = keys[gap].or_else(|| key_in(row, context));
+        }
+    }
+    let is_below = keys[0].is_none() && keys[blocks.len()].is_some();
+    keys.into_iter().skip(1).map(|key| key.filter(|_| is_below)).collect()
 }
 
 fn key(lines: impl Iterator<Item = String>, context: &Context<'_>) -> Option<[Direction; 2]> {
@@ -63,9 +87,24 @@ fn key(lines: impl Iterator<Item = String>, context: &Context<'_>) -> Option<[Di
     }
 }
 
-/// Whether a row is such a key, and heads no columns.
+/// Whether a word in a key is neither a part of a direction nor joins two.
+fn is_strange(word: &str, v: Vocabulary<'_>) -> bool {
+    word.chars().nth(2).is_some()
+        && v.direction_word(word).is_none()
+        && v.title_word(word).is_none()
+        && v.key(word) != Some(HeaderKey::Direction)
+}
+
+/// Whether a row is such a key, and heads no columns. `1. Warp` alone is a title.
 pub(super) fn is_key(row: &Row<'_>, context: &Context<'_>) -> bool {
-    row.get(0).is_some() && row.filled().all(|(_, cell)| !directions(&cell.text, context).is_empty())
+    row.get(0).is_some()
+        && row.filled().all(|(_, cell)| !directions(&cell.text, context).is_empty())
+        && key(row.filled().map(|(_, cell)| cell.text.to_string()), context).is_some()
+}
+
+/// What a row says as a key, also behind a word: `Note: 1 - weft; 2 - warp`.
+pub(super) fn key_in(row: &Row<'_>, context: &Context<'_>) -> Option<[Direction; 2]> {
+    key(row.filled().map(|(_, cell)| cell.text.to_string()), context)
 }
 
 /// Whether a row numbers columns: nothing in its first cell, then 1, 2 and so on, and perhaps from 1 again, with statistics between.

@@ -37,6 +37,13 @@ pub(super) struct Row<'a> {
     pub in_cells: bool,
 }
 
+impl Cell<'_> {
+    /// The same text, borrowed.
+    pub fn by_reference(&self) -> Cell<'_> {
+        Cell { text: Cow::Borrowed(self.text.as_ref()), column: self.column }
+    }
+}
+
 impl Row<'_> {
     pub fn is_blank(&self) -> bool {
         self.cells.iter().all(|c| c.text.trim().is_empty())
@@ -54,10 +61,7 @@ impl Row<'_> {
 
     /// The same cells, borrowed.
     pub fn by_reference(&self) -> Row<'_> {
-        let mut cells = Vec::with_capacity(self.cells.len());
-        for cell in &self.cells {
-            cells.push(Cell { text: Cow::Borrowed(cell.text.as_ref()), column: cell.column });
-        }
+        let cells = self.cells.iter().map(Cell::by_reference).collect();
         Row { line: self.line, cells, in_cells: self.in_cells }
     }
 

@@ -154,14 +154,9 @@ fn beside_curves(unread: Vec<ReadError>, content: &mut FileContent) -> Result<()
         if content.measurements.is_empty() && !is_other {
             return Err(error);
         }
-        content.findings.push(not_understood(error));
+        content.findings.push(error.not_understood());
     }
     Ok(())
-}
-
-fn not_understood(error: ReadError) -> Finding {
-    let fact = ReadFact::SheetNotUnderstood { reason: error.problem.to_string() };
-    Finding::new(fact).at(error.place)
 }
 
 fn context<'a>(
@@ -266,7 +261,7 @@ fn sheets(
         let first = tables.into_iter().chain(unread).next();
         return Err(first.unwrap_or_else(|| error(ReadProblem::Empty)));
     }
-    content.findings.extend(unread.into_iter().map(not_understood));
+    content.findings.extend(unread.into_iter().map(ReadError::not_understood));
     beside_curves(tables, content)?;
     let vocabulary = Vocabulary::new(&settings.dialects);
     let joined = branches::join(&mut content.measurements, &mut of_sheets, path, vocabulary);

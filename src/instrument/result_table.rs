@@ -150,7 +150,7 @@ pub(super) fn read(
             if e.place.line == row.line { table.leave_out(facts.fabric.clone(), e) } else { Err(e) }
         })?;
     }
-    table.hold_values()?;
+    table.hold_values(region)?;
     table.leave_out_other_spreads();
     table.refuse_negative_deviations()?;
     table.note_cells();

@@ -24,6 +24,10 @@ pub(super) fn put_under_heads(rows: &mut [Row<'_>], text: &str, decimal: char, v
     if body.is_empty() || !has_one_more || !heads.cells.iter().all(|c| is_word(c.text.trim())) {
         return false;
     }
+    // A comma in a title above the heads.
+    if body[0].filled().all(|(_, c)| is_word(c.text.trim())) {
+        return false;
+    }
     let says: Vec<Facets> = heads.cells.iter().map(|c| Facets::of(&c.text, v)).collect();
     let over_words = body.iter().any(|row| {
         says.iter().enumerate().any(|(i, head)| head.names_value() && row.get(i).is_some_and(is_word))

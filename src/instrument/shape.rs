@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::caption::is_numbered;
 use super::context::Context;
 use super::dialect::{Role, Statistic, TableColumn};
 use super::facets::Facets;
@@ -11,6 +12,7 @@ use super::row_kind::{Kind, kind};
 pub(super) use super::row_kind::{facets, is_value, is_value_of};
 pub(super) use super::section::section;
 use super::sniff::{Number, number};
+use super::table_title;
 use super::unit_text::split_unit;
 use super::value::is_gap;
 use super::{Direction, Parameter};
@@ -53,6 +55,19 @@ pub(super) fn continues(row: &Row<'_>, region: &Region<'_>, context: &Context<'_
             let other = form(r);
             own.iter().all(|c| other.contains(c))
         })
+}
+
+/// Whether the row above has words in the same three columns or more, beside words and numbers of its own: a table of something that is
+/// not known, and no header line.
+pub(super) fn heads_row(above: &[Row<'_>], row: &Row<'_>, context: &Context<'_>) -> bool {
+    let Some(head) = above.last() else { return false };
+    let columns = |row: &Row<'_>| row.filled().map(|(i, _)| i).collect::<Vec<_>>();
+    let has_name = row.filled().next().is_some_and(|(_, c)| !is_value(&c.text, context));
+    has_name
+        && row.filled().nth(2).is_some()
+        && columns(row) == columns(head)
+        && row.filled().skip(1).all(|(_, c)| is_value(&c.text, context))
+        && head.filled().all(|(_, c)| !is_value(&c.text, context))
 }
 
 /// Several numbers and nothing else.
@@ -156,7 +171,11 @@ fn stands_over(row: &Row<'_>, next: Option<&Row<'_>>, context: &Context<'_>) -> 
         && row.filled().nth(1).is_some()
         && row.filled().all(|(_, c)| !is_value(&c.text, context))
         && facets(row, context).iter().all(|f| f.unknown || *f == Facets::default())
-        && next.is_some_and(|next| has_symbols(next, context) || heads_statistics(next, context))
+        && next.is_some_and(|next| {
+            has_symbols(next, context)
+                || heads_statistics(next, context)
+                || heads_directions_again(next, context)
+        })
 }
 
 /// `Parameter, Direction, Mean, CV, Mean, CV`: statistics of several fabrics beside a column of parameters.
@@ -164,6 +183,14 @@ fn heads_statistics(row: &Row<'_>, context: &Context<'_>) -> bool {
     let says = facets(row, context);
     let means = says.iter().filter(|f| f.statistic == Some(Statistic::Mean)).count();
     means > 1 && says.iter().any(|f| f.meta == Some(TableColumn::Parameter))
+}
+
+/// `Parameter, Unit, Warp, Weft, Warp, Weft`: directions of several fabrics beside a column of parameters.
+fn heads_directions_again(row: &Row<'_>, context: &Context<'_>) -> bool {
+    let says = facets(row, context);
+    let warps = says.iter().filter(|f| f.direction == Some(Direction::Warp)).count();
+    let wefts = says.iter().filter(|f| f.direction == Some(Direction::Weft)).count();
+    warps > 1 && warps == wefts && says.iter().any(|f| f.meta == Some(TableColumn::Parameter))
 }
 
 /// Whether a row has one cell alone, and no number in it.
@@ -249,10 +276,37 @@ fn heads(rows: &[Row<'_>], at: usize, context: &Context<'_>) -> Option<Heads> {
         return enough.then_some(Heads { end, down: true, section, title, first });
     }
     if !across(&found, context) {
-        return None;
+        let first = title_above(&rows[..first], &found, context)?;
+        return next().next().is_some().then_some(Heads { end, down: false, section, title, first });
     }
     // Heads without anything below are a list of words.
     next().next().is_some().then_some(Heads { end, down: false, section, title, first })
+}
+
+/// The row of a title that names the parameter of directions below it, `B (gf·cm²/cm)` over `Fabric,Warp,Weft`, with a blank row between
+/// them at most.
+fn title_above(above: &[Row<'_>], found: &[&Row<'_>], context: &Context<'_>) -> Option<usize> {
+    let says: Vec<Facets> = found.iter().flat_map(|row| facets(row, context)).collect();
+    let heads_directions =
+        says.iter().any(|f| f.direction.is_some()) && !says.iter().any(Facets::names_value);
+    let blanks = above.iter().rev().take_while(|row| row.is_blank()).count();
+    let at = above.len().checked_sub(blanks + 1).filter(|_| heads_directions && blanks < 2)?;
+    table_title::parameter(&above[at], context).map(|_| at)
+}
+
+/// Whether a row is a title like that of the table, over another parameter, one with the number of a table, or heads over something else.
+fn begins_another(row: &Row<'_>, region: &Region<'_>, context: &Context<'_>) -> bool {
+    if is_alone(row, context) && row.get(0).is_some_and(|text| is_numbered(text, context.vocabulary)) {
+        return true;
+    }
+    let Some(last) = region.heads.last().filter(|_| !region.down) else { return false };
+    if facets(last, context).iter().any(Facets::names_value) {
+        return false;
+    }
+    let behind =
+        |row: &Row<'_>| row.filled().skip(1).map(|(i, c)| (i, c.text.to_string())).collect::<Vec<_>>();
+    let has_heads = row.get(0).is_some() && row.filled().count() > 1 && behind(row) == behind(last);
+    has_heads || table_title::parameter(row, context).is_some()
 }
 
 /// The table that begins at a row, and the row behind it.
@@ -349,7 +403,7 @@ fn belongs(
         return !after_blank;
     }
     // `1 = weft, 2 = warp` below the table.
-    if numbered::is_key(row, context) {
+    if numbered::is_key(row, context) || begins_another(row, region, context) {
         return false;
     }
     match kind(row, context) {

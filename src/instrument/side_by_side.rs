@@ -1,6 +1,5 @@
 //! Tables beside each other: `Parameter,Unit,Warp,,Parameter,Unit,Warp`, with an empty column between them.
 
-use std::borrow::Cow;
 use std::ops::Range;
 
 use super::context::Context;
@@ -50,10 +49,12 @@ fn tables_below(heads: &Row<'_>, rows: &[Row<'_>], context: &Context<'_>) -> Vec
     if !is_head {
         return Vec::new();
     }
-    let again = heads.filled().filter(|(i, cell)| {
-        *i > 0 && cell.text == first.text && rows.iter().all(|row| row.get(i - 1).is_none())
-    });
+    let again = heads.filled().filter(|(i, cell)| *i > 0 && cell.text.trim() == first.text.trim());
     let mut starts: Vec<usize> = again.map(|(i, _)| i).collect();
+    starts.retain(|i| rows.iter().all(|row| row.get(i - 1).is_none()));
+    if starts.is_empty() {
+        return Vec::new();
+    }
     starts.push(rows.iter().map(|row| row.cells.len()).max().unwrap_or(0));
     let mut start = 0;
     let mut tables = Vec::new();
@@ -67,9 +68,7 @@ fn tables_below(heads: &Row<'_>, rows: &[Row<'_>], context: &Context<'_>) -> Vec
 /// The cells of a row in some columns; none of a row that has nothing there.
 fn part<'r>(row: &'r Row<'_>, columns: &Range<usize>) -> Option<Row<'r>> {
     let end = columns.end.min(row.cells.len());
-    let cells = row.cells.get(columns.start..end)?.iter();
-    let cells: Vec<Cell<'r>> =
-        cells.map(|c| Cell { text: Cow::Borrowed(c.text.as_ref()), column: c.column }).collect();
+    let cells = row.cells.get(columns.start..end)?.iter().map(Cell::by_reference).collect();
     let row = Row { line: row.line, cells, in_cells: row.in_cells };
     (!row.is_blank()).then_some(row)
 }

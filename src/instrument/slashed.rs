@@ -5,40 +5,50 @@ use std::ops::Range;
 
 use super::context::Context;
 use super::raw::{Cell, Row};
+use super::row_kind::facets;
 use super::sniff::{Number, number};
-use super::value::is_gap;
+use super::value::{is_gap, value};
 
-/// Rows below a head in which there are two numbers in a cell, if there are at all.
-const NEXT: usize = 4;
+/// The columns of a row of heads that name two directions, each with the two heads in its place.
+type Heads = Vec<(usize, [String; 2])>;
 
 /// The rows with a column for each of the two directions; none where no head names two.
 pub(super) fn apart<'r>(rows: &'r [Row<'_>], context: &Context<'_>) -> Option<Vec<Row<'r>>> {
     let mut out: Option<Vec<Row<'r>>> = None;
-    for (at, row) in rows.iter().enumerate() {
-        // From the right, so that columns further left keep their places.
-        for index in (0..row.cells.len()).rev() {
-            let Some(heads) = heads(&row.cells[index].text, context) else { continue };
-            // Every row may say `warp/weft`, and not each of them is to be compared with all below.
-            let mut next = rows[at + 1..].iter().take(NEXT).filter_map(|row| row.get(index));
-            if !next.any(|cell| halves(cell, context).is_some()) {
-                continue;
-            }
-            let below = rows[at + 1..].iter().take_while(|row| !row.is_blank());
-            let end = at + 1 + below.count();
-            if !are_apart(&rows[at + 1..end], index, context) {
-                continue;
-            }
-            let begin = at - rows[..at].iter().rev().take_while(|row| !row.is_blank()).count();
+    let mut at = 0;
+    while at < rows.len() {
+        let end = at + rows[at..].iter().take_while(|row| !row.is_blank()).count();
+        let found = heads_of(&rows[at..end], context);
+        if !found.is_empty() {
             let out = out.get_or_insert_with(|| rows.iter().map(Row::by_reference).collect());
-            for (k, row) in out[begin..end].iter_mut().enumerate() {
-                match k + begin == at {
-                    true => insert(row, index, heads.clone()),
-                    false => divide(row, index, k + begin > at, context),
-                }
-            }
+            widen(&mut out[at..end], &found, context);
         }
+        at = end + 1;
     }
     out
+}
+
+/// The rows of heads in a paragraph below which two numbers stand in each cell.
+fn heads_of(rows: &[Row<'_>], context: &Context<'_>) -> Vec<(usize, Heads)> {
+    let mut found: Vec<(usize, Heads)> = Vec::new();
+    for (at, row) in rows.iter().enumerate() {
+        let cells = row.filled().filter_map(|(i, cell)| Some((i, heads(&cell.text, context)?)));
+        let heads: Heads = cells.collect();
+        if !heads.is_empty() {
+            found.push((at, heads));
+        }
+    }
+    let mut end = rows.len();
+    for (at, heads) in found.iter_mut().rev() {
+        heads.retain(|(index, _)| are_apart(row_range(rows, *at + 1..end), *index, &rows[*at], context));
+        end = *at;
+    }
+    found.retain(|(_, heads)| !heads.is_empty());
+    found
+}
+
+fn row_range<'r, 't>(rows: &'r [Row<'t>], range: Range<usize>) -> &'r [Row<'t>] {
+    rows.get(range).unwrap_or_default()
 }
 
 /// A head that names two directions with a slash between them, once with each.
@@ -51,7 +61,11 @@ fn heads(text: &str, context: &Context<'_>) -> Option<[String; 2]> {
         let [first, second] = words_beside(text, slash);
         let directions =
             [&first, &second].map(|range| context.vocabulary.direction_exactly(&text[range.clone()]));
-        let differ = matches!(directions, [Some(first), Some(second)] if first != second);
+        let v = context.vocabulary;
+        let (one, other) = (&text[first.clone()], &text[second.clone()]);
+        let differ = matches!(directions, [Some(first), Some(second)] if first != second)
+            || v.are_partners(one, other)
+            || v.are_partners(other, one);
         let (before, behind) = (&text[..first.start], &text[second.end..]);
         differ.then(|| [first, second].map(|word| format!("{before}{}{behind}", &text[word])))
     })
@@ -60,48 +74,81 @@ fn heads(text: &str, context: &Context<'_>) -> Option<[String; 2]> {
 /// The words before and behind a slash.
 fn words_beside(text: &str, slash: usize) -> [Range<usize>; 2] {
     let before = text[..slash].trim_end();
-    let start = before
-        .char_indices()
-        .rev()
-        .take_while(|(_, c)| c.is_alphanumeric())
-        .last()
-        .map_or(before.len(), |(at, _)| at);
+    let letters = before.char_indices().rev().take_while(|(_, c)| c.is_alphanumeric());
+    let start = letters.last().map_or(before.len(), |(at, _)| at);
     let behind = text[slash + 1..].trim_start();
     let at = text.len() - behind.len();
     let length = behind.find(|c: char| !c.is_alphanumeric()).unwrap_or(behind.len());
     [start..before.len(), at..at + length]
 }
 
-/// Whether a column has two numbers in each cell that holds anything, apart from units.
-fn are_apart(rows: &[Row<'_>], index: usize, context: &Context<'_>) -> bool {
-    let mut cells = rows.iter().filter_map(|row| row.get(index)).filter(|cell| !is_gap(cell));
-    // Units have no digits, or stand below both heads.
-    cells.all(|cell| !cell.contains(|c: char| c.is_ascii_digit()) || halves(cell, context).is_some())
+/// Whether a column has two numbers in its cells, apart from words, gaps, and single numbers of what has no direction.
+fn are_apart(rows: &[Row<'_>], index: usize, head: &Row<'_>, context: &Context<'_>) -> bool {
+    let mut any = false;
+    for row in rows {
+        let Some(cell) = row.get(index).filter(|cell| !is_gap(cell)) else { continue };
+        let is_apart = halves(cell, context).is_some();
+        any |= is_apart;
+        if !is_apart
+            && cell.contains(|c: char| c.is_ascii_digit())
+            && !is_of_fabric(row, head, index, context)
+        {
+            return false;
+        }
+    }
+    any
 }
 
+/// Whether the parameter that a row or a head names has no direction.
+fn is_of_fabric(row: &Row<'_>, head: &Row<'_>, index: usize, context: &Context<'_>) -> bool {
+    let of_head = head.get(index).and_then(|text| context.facets(text).parameter);
+    let parameter = of_head.or_else(|| facets(row, context).into_iter().find_map(|says| says.parameter));
+    parameter.is_some_and(|parameter| !parameter.is_directional())
+}
+
+/// Two numbers, each with or without a deviation, of which one may be missing.
 fn halves<'c>(cell: &'c str, context: &Context<'_>) -> Option<[&'c str; 2]> {
     let (first, second) = cell.split_once('/')?;
     let halves = [first.trim(), second.trim()];
-    halves.iter().all(|text| matches!(number(text, context.decimal), Number::Value(_))).then_some(halves)
+    let are_numbers = halves.map(|text| matches!(value(text, context.decimal), (Number::Value(_), _)));
+    let are_gaps = halves.map(is_gap);
+    let is_pair = (0..2).all(|i| are_numbers[i] || are_gaps[i]) && are_numbers.contains(&true);
+    is_pair.then_some(halves)
+}
+
+/// Gives every row of a paragraph a second cell for each head above it; above the first heads, for each of those.
+fn widen(rows: &mut [Row<'_>], found: &[(usize, Heads)], context: &Context<'_>) {
+    for (at, row) in rows.iter_mut().enumerate() {
+        let above = found.iter().rev().find(|(of, _)| *of <= at);
+        let Some((of, heads)) = above.or(found.first()) else { return };
+        // From the right, so that columns further left keep their places.
+        for (index, texts) in heads.iter().rev() {
+            if *of == at {
+                insert(row, *index, texts.clone());
+            } else {
+                divide(row, *index, above.is_some(), context);
+            }
+        }
+    }
 }
 
 /// Puts two cells in the place of one.
 fn insert(row: &mut Row<'_>, index: usize, texts: [String; 2]) {
     let [first, second] = texts;
-    let column = row.cells[index].column;
-    row.cells[index].text = Cow::Owned(first);
-    row.cells.insert(index + 1, Cell { text: Cow::Owned(second), column });
+    let column = row.column(index);
+    if let Some(cell) = row.cells.get_mut(index) {
+        cell.text = Cow::Owned(first);
+        row.cells.insert(index + 1, Cell { text: Cow::Owned(second), column });
+    }
 }
 
-/// The same of a row with two numbers; what is not divided stands once, or as a unit below the head twice.
+/// The same of a row that is no head: words below the heads, such as units, are those of both.
 fn divide(row: &mut Row<'_>, index: usize, is_below: bool, context: &Context<'_>) {
-    if index >= row.cells.len() {
-        return;
-    }
-    let text = row.cells[index].text.trim().to_string();
+    let Some(text) = row.cells.get(index).map(|cell| cell.text.trim().to_string()) else { return };
+    let is_number = matches!(number(&text, context.decimal), Number::Value(_));
     match halves(&text, context) {
         Some(halves) if is_below => insert(row, index, halves.map(str::to_string)),
-        _ if is_below => insert(row, index, [text.clone(), text]),
+        _ if is_below && !is_number => insert(row, index, [text.clone(), text]),
         _ => insert(row, index, [text, String::new()]),
     }
 }

@@ -205,7 +205,7 @@ impl Catalogue {
         let Named { name, findings } = self.names[at].clone();
         sheet.name = name;
         sheet.findings.extend(findings);
-        Ok(Fabric { path: input.path, sheet })
+        Ok(Fabric::of_sheet(input.path, sheet))
     }
 }
 

@@ -125,7 +125,9 @@ impl FabricReport {
                 // Every case needs the section: one line, not one for each of them.
                 let failure = Failure::of_fabric(error, &sheet.name).at(Place::file(&fabric.path));
                 report.failures.push(failure);
-                report.draw(sheet, &[], folder);
+                // A case may state what the fabric lacks.
+                let able: Vec<Task> = tasks.iter().filter(|task| task.has_its_section()).cloned().collect();
+                report.simulate(sheet, &able, folder, observer);
             }
         }
         report.close(fabric);

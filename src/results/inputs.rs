@@ -10,6 +10,7 @@ use super::failure::Failure;
 use super::names::distinguish_fabrics;
 use super::observer::Observer;
 use crate::characterise::{FabricSheet, Modulus, Settings, characterise};
+use crate::constitutive::Constitutive;
 use crate::finding::{Finding, Place};
 use crate::instrument::{
     FabricInput, Inference, Library, ReadError, ReadSettings, parse_fabrics, read_dialect,
@@ -146,6 +147,15 @@ pub struct Fabric {
     pub path: PathBuf,
     /// Its parameters.
     pub sheet: FabricSheet,
+    /// The section that a document or a card states; elsewhere it is made of the sheet, with the assumptions of a case.
+    pub section: Option<Box<Constitutive>>,
+}
+
+impl Fabric {
+    /// A fabric whose section is made of its sheet.
+    pub fn of_sheet(path: PathBuf, sheet: FabricSheet) -> Self {
+        Self { path, sheet, section: None }
+    }
 }
 
 impl Reading {
@@ -263,7 +273,7 @@ impl Reading {
             if curves == Curves::Dropped {
                 sheet.drop_curves();
             }
-            Fabric { path: input.path, sheet }
+            Fabric::of_sheet(input.path, sheet)
         };
         let Read { done: mut fabrics, failures, .. } =
             self.each(inputs, "characterising", evaluated, observer)?;

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use nalgebra::Matrix3;
@@ -10,15 +11,21 @@ use nalgebra::Matrix3;
 use super::columns::Columns;
 use super::failure::Failure;
 use super::inputs::{Curves, Fabric, Input, Reading, nothing_to_read, paths_of_several};
+use super::names::distinguish_fabrics;
 use super::observer::Observer;
-use crate::characterise::{FabricSheet, Key};
+use crate::characterise::{FabricSheet, Key, Modulus};
 use crate::constitutive::{Assumptions, Constitutive, InputSource, Provenance, Used, entries, section};
-use crate::finding::{EvaluationFact, Fact, Place};
+use crate::finding::{EvaluationFact, Fact, Finding, Place, SectionFact};
 use crate::instrument::{FabricInfo, Origin, Parameter};
 use crate::platform::files;
 use crate::quantity::{Bands, repeats_text, significant};
 use crate::report::cards::{self, read::StatedSection};
 use crate::report::read_back::{self, ReadDocument};
+use crate::section::ShellSection;
+
+/// Thicknesses √(12 D11/A11) (m) and masses (kg/m²) far around those of cloth.
+const THICKNESSES: RangeInclusive<f64> = 1e-6..=0.02;
+const MASSES: RangeInclusive<f64> = 1e-3..=20.0;
 
 /// A sheet and its section.
 #[derive(Clone, Debug)]
@@ -88,14 +95,23 @@ fn of_card(input: &Input, card: StatedSection, assumptions: &Assumptions) -> (Fa
         used.push(entry("thickness", assumptions.thickness.to_string(), Provenance::Assumed, source));
     }
     let made = Constitutive {
+        findings: no_cloth(&name, &card.section).into_iter().collect(),
         section: card.section,
         law: None,
         used,
         inputs: Vec::new(),
         surface_friction: None,
-        findings: Vec::new(),
     };
     (FabricSheet { name: name.into_owned(), info, ..FabricSheet::default() }, made)
+}
+
+/// C021: a card in other units than SI is most often that of a sheet that no cloth is.
+fn no_cloth(name: &str, section: &ShellSection) -> Option<Finding> {
+    let (thickness, areal_density) =
+        ((12.0 * section.d_b[(0, 0)] / section.d_m[(0, 0)]).sqrt(), section.areal_density);
+    let is_cloth = THICKNESSES.contains(&thickness) && MASSES.contains(&areal_density);
+    let fact = SectionFact::NoCloth { fabric: name.to_string(), thickness, areal_density };
+    (!is_cloth).then(|| Finding::new(fact))
 }
 
 /// The bytes of an input that may be a document or a card: a JSON file, a U3M material, an input file of Abaqus or CalculiX, or
@@ -112,6 +128,40 @@ fn document_bytes(input: &Input) -> Option<Cow<'_, [u8]>> {
             is_document.then(|| files::read(path).ok().map(Cow::Owned))?
         }
     }
+}
+
+/// Fabrics for cases: those of measurements, and those of documents and cards with the section that they state. `assumptions` close what a
+/// card leaves open.
+pub(super) fn fabrics_for_cases(
+    inputs: &[Input],
+    reading: &Reading,
+    (moduli, assumptions): (&[Modulus], &Assumptions),
+    observer: &Observer,
+) -> Result<(Vec<Fabric>, Vec<Failure>), Failure> {
+    let Sorted { documents, others, mut failures } = Sorted::new(inputs, assumptions);
+    failures.iter().for_each(|failure| observer.failed(failure));
+    let mut fabrics = Vec::new();
+    if !others.is_empty() {
+        let (read, unread) = reading.sheets(&others, moduli, Curves::Kept, observer)?;
+        fabrics = read;
+        failures.extend(unread);
+    }
+    for (path, document) in documents {
+        match document {
+            ReadDocument::Sheets(sheets) => {
+                fabrics.extend(sheets.into_iter().map(|sheet| Fabric::of_sheet(path.clone(), sheet)));
+            }
+            ReadDocument::Sections(sections) => {
+                observer.note(&format!("{}: a section; its own assumptions stand", path.display()));
+                fabrics.extend(sections.into_iter().map(|(sheet, made)| {
+                    let section = Some(Box::new(made));
+                    Fabric { path: path.clone(), sheet, section }
+                }));
+            }
+        }
+    }
+    distinguish_fabrics(&mut fabrics);
+    Ok((fabrics, failures))
 }
 
 /// The section of every fabric that has one, and what failed. What is found and what fails goes to the observer.
@@ -150,10 +200,13 @@ pub fn sections_with(
     for (path, document) in documents {
         match document {
             ReadDocument::Sheets(sheets) => {
-                fabrics.extend(sheets.into_iter().map(|sheet| Fabric { path: path.clone(), sheet }));
+                fabrics.extend(sheets.into_iter().map(|sheet| Fabric::of_sheet(path.clone(), sheet)));
             }
             ReadDocument::Sections(sections) => {
                 observer.note(&format!("{}: a section; its own assumptions stand", path.display()));
+                for finding in sections.iter().flat_map(|(_, made): &(_, Constitutive)| &made.findings) {
+                    observer.found(None, &finding.clone().at(Place::file(&path)));
+                }
                 let sectioned = |(sheet, made)| Sectioned { path: path.clone(), sheet, made };
                 ready.extend(sections.into_iter().map(sectioned));
             }
@@ -179,7 +232,7 @@ pub fn sections_with(
 
 /// `shared` are the paths that stand for several fabrics: there a finding names its fabric.
 fn sectioned(
-    Fabric { path, sheet }: Fabric,
+    Fabric { path, sheet, .. }: Fabric,
     assumptions: &Assumptions,
     shared: &BTreeSet<PathBuf>,
     observer: &Observer,

@@ -95,8 +95,9 @@ impl<'f, 'c> Task<'f, 'c> {
 
     pub(crate) fn new(case: &'c Case, fabric: Option<&'f Fabric>, shared: Arc<Shared<'c>>) -> Self {
         let path = fabric.map(|f| f.path.as_path());
+        let given = fabric.and_then(|f| f.section.as_deref()).map(|made| Arc::new(made.clone()));
         let fabric = fabric.map(|f| &f.sheet);
-        Self { case, fabric, path, shared, given: None, sampling: Arc::default() }
+        Self { case, fabric, path, shared, given, sampling: Arc::default() }
     }
 
     /// A task that shares nothing with others: a case with a fabric of the caller's choice, whatever fabric the case
@@ -197,6 +198,11 @@ impl Task<'_, '_> {
             // A case for a fabric becomes a task with one.
             (None, None) => Err(Failure::new("O055", format!("{} has no section", self.case.name))),
         }
+    }
+
+    /// Whether nothing that its section needs is missing.
+    pub(super) fn has_its_section(&self) -> bool {
+        !self.case.needs_section() || self.section().is_ok()
     }
 
     /// The choices between the sheet of its fabric and the section.

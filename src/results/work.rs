@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::failure::Failure;
-use super::inputs::{self, Curves, Fabric, Input, Reading};
+use super::inputs::{self, Fabric, Input, Reading};
 use super::names::distinguish_cases;
 use super::observer::Observer;
+use super::section::fabrics_for_cases;
 use super::shard::Share;
 use super::task::{Limits, Shared, Task};
 use crate::case::{Case, FabricMaterial, SolverChoice};
@@ -51,7 +52,9 @@ impl Job {
     pub fn read(&self, observer: &Observer) -> Result<Work, Failure> {
         let JobInputs { cases, fabrics, mut failures } = self.cases(observer);
         let moduli: Vec<_> = cases.iter().filter_map(|c| c.assumptions()).map(|a| a.modulus).collect();
-        let (fabrics, unread) = self.reading.sheets(&fabrics, &moduli, Curves::Kept, observer)?;
+        let assumptions = cases.iter().find_map(Case::assumptions).cloned().unwrap_or_default();
+        let (fabrics, unread) =
+            fabrics_for_cases(&fabrics, &self.reading, (&moduli, &assumptions), observer)?;
         failures.extend(unread);
         Ok(Work { cases, fabrics, failures, threads: self.threads.max(1), limits: self.limits })
     }

@@ -144,6 +144,8 @@ pub(super) fn findings(
     }
     if let Some(direction) = held_everywhere(model, extent.flat) {
         facts.push(StudyFact::HeldEverywhere { direction: direction.to_string() });
+    } else if acts_on_held_alone(model) {
+        facts.push(StudyFact::LoadsOnHeld {});
     }
     let mut findings: Vec<Finding> =
         facts.into_iter().map(|fact| Finding::new(fact).at(Place::file(&case.path))).collect();
@@ -286,6 +288,14 @@ fn held_everywhere(model: &Model, flat: bool) -> Option<&'static str> {
         loaded && nodes.all(|node| dofs.iter().all(|dof| held[6 * *node as usize + dof] == Some(0.0)))
     });
     found.map(|(_, name)| *name)
+}
+
+/// Whether loads act, nothing is displaced, and each force and moment is on a dof that a support holds at zero.
+fn acts_on_held_alone(model: &Model) -> bool {
+    let (load, held) = (model.load_vector(), model.constraints());
+    load.iter().any(|f| *f != 0.0)
+        && load.iter().zip(&held).all(|(f, value)| *f == 0.0 || value.is_some())
+        && held.iter().flatten().all(|value| *value == 0.0)
 }
 
 /// Whether the sheet is pressed in its plane anywhere, beyond rounding.

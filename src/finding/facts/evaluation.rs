@@ -221,6 +221,16 @@ super::facts! {
             curves: f64,
         } = "{key}: the table gives {:.4}, the curves give {:.4} {}; the curves are used",
             table / key.parameter.kes_factor(), curves / key.parameter.kes_factor(), key.parameter.kes_unit();
+        /// `fabric.toml` and the files disagree.
+        "K069" StatedDiffers {
+            /// The value.
+            key: Key,
+            /// That of `fabric.toml` (SI).
+            stated: f64,
+            /// Mean of the files (SI).
+            value: f64,
+        } = "{key}: fabric.toml states {:.4}, the files give {:.4} {}; the files are used: remove what does not hold",
+            stated / key.parameter.kes_factor(), value / key.parameter.kes_factor(), key.parameter.kes_unit();
         /// No areal density.
         "K017" NoArealDensity {} =
             "no areal density: FB3 does not measure it; state areal_density in fabric.toml (mass of a 20 x 20 cm specimen)";

@@ -308,6 +308,14 @@ super::facts! {
         /// Angles in a column of directions.
         "R150" AnglesAsDirections {} =
             "the angles in the column of directions are taken as those to the warp: 0 is warp, 90 is weft, 45 is bias";
+        /// Words in a column of records that are taken as a part of the names of fabrics.
+        "R151" StatesAsFabrics {
+            /// Heading of the column.
+            column: String,
+            /// Its entries.
+            entries: Vec<String>,
+        } = "what the column {column:?} says ({}) is taken as a part of the name of the fabric, so that each is a fabric of its own; remove the \
+             column if the records are of one", some(entries);
         /// Blank cells below a direction or a parameter.
         "R124" MergedCells {} = "blank cells are read as the direction or parameter above them, as of merged cells: fill them in \
              if they are something else";

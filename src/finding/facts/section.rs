@@ -1,7 +1,7 @@
 //! Facts of what a sheet leaves open for a section.
 
 use crate::kes::Direction;
-use crate::quantity::significant;
+use crate::quantity::{in_unit, significant};
 
 super::facts! {
     /// What stands in for something that was not measured.
@@ -82,6 +82,16 @@ super::facts! {
             times: f64,
         } = "{fabric}: the torsional rigidity D66 is {} times the geometric mean of both bending rigidities, of which \
              Huber's assumption takes half: look at its unit and at what it was taken from", significant(*times);
+        /// A section that another program states, and that no cloth has.
+        "C021" NoCloth {
+            /// Name of the fabric.
+            fabric: String,
+            /// The thickness of a homogeneous sheet of these stiffnesses, √(12 D11/A11) (m).
+            thickness: f64,
+            /// Mass per area (kg/m²).
+            areal_density: f64,
+        } = "{fabric}: a sheet of these matrices is {} thick and weighs {} kg/m², which no cloth does: the values are taken as SI (N, m, kg); \
+             convert a card in mm, N and t first", in_unit(*thickness, "mm"), significant(*areal_density);
         /// No hysteresis of bending.
         "C017" NoHysteresis {
             /// Name of the fabric.

@@ -151,6 +151,9 @@ super::facts! {
             direction: String,
         } = "every node is held {direction}, where loads act: nothing can move, whatever they are; take more cells, so that there are nodes \
              between the supports, or hold fewer of them";
+        /// Loads on what supports hold, and no others.
+        "S162" LoadsOnHeld {} = "every load acts on what a support holds in its direction: it shows in the reactions alone, and nothing moves; \
+             load other nodes, or hold fewer dofs of these";
         /// An obstacle that contains a part of the sheet at rest.
         "S160" StartsWithin {
             /// Name of the obstacle.

@@ -6,7 +6,7 @@ use super::layout::{Column, Layout};
 use super::row_facts::RowFacts;
 use super::{Datum, Own, Table};
 use crate::finding::{Finding, Place, ReadFact};
-use crate::instrument::caption::is_of_no_values;
+use crate::instrument::caption::{is_of_no_values, says_what_is_in_brackets};
 use crate::instrument::cell::parts;
 use crate::instrument::context::Context;
 use crate::instrument::dialect::{Statistic, TableColumn};
@@ -99,15 +99,16 @@ impl Table<'_, '_> {
     ///
     /// # Errors
     /// R026 where the title or the name of the sheet says that these are no values, and nothing in the table does.
-    pub(super) fn hold_values(&self) -> Result<(), ReadError> {
+    pub(super) fn hold_values(&self, region: &Region<'_>) -> Result<(), ReadError> {
         let v = self.context.vocabulary;
         let says_more = |d: &Datum| d.own.is_some() || d.sd.is_some() || d.statistic.is_some();
         if self.data.iter().any(says_more) || self.data.is_empty() {
             return Ok(());
         }
         let title = self.header.caption.as_ref().filter(|title| is_of_no_values(title, v));
-        let Some(title) = title.or(self.context.sheet_of_no_values.as_ref()) else { return Ok(()) };
-        let problem = ReadProblem::NoValuesByTitle { title: title.clone() };
+        let own = title.or(self.context.sheet_of_no_values.as_ref()).cloned();
+        let Some(title) = own.or_else(|| title_of_spreads(region, self.context)) else { return Ok(()) };
+        let problem = ReadProblem::NoValuesByTitle { title };
         Err(self.context.error(self.layout.line, 0, problem))
     }
 
@@ -115,7 +116,9 @@ impl Table<'_, '_> {
     /// is more than half of its mean: all of that column are left out.
     pub(super) fn leave_out_other_spreads(&mut self) {
         let v = self.context.vocabulary;
-        let by_caption = self.header.caption.as_deref().is_some_and(|text| names_another(text, v));
+        let caption = self.header.caption.as_deref();
+        let by_caption =
+            caption.is_some_and(|text| names_another(text, v) || says_what_is_in_brackets(text, v));
         let by_head = self.layout.values.iter().filter(|c| names_another(&c.name, v)).map(|c| c.index);
         let mut columns: BTreeSet<usize> = by_head.collect();
         columns.extend(self.data.iter().filter(|d| by_caption || d.is_beyond()).map(|d| d.cell));
@@ -193,6 +196,13 @@ impl Datum {
     fn is_beyond(&self) -> bool {
         self.own == Some(Own::Bracket) && self.sd.is_some_and(|sd| sd > LARGEST_DEVIATION * self.mean.abs())
     }
+}
+
+/// The name of a spread that stands alone over the heads: `Standard deviation`.
+fn title_of_spreads(region: &Region<'_>, context: &Context<'_>) -> Option<String> {
+    let title =
+        region.heads.first().filter(|row| region.heads.len() > 1 && row.filled().count() == 1)?.get(0)?;
+    (context.facets(title).statistic == Some(Statistic::Spread)).then(|| title.to_string())
 }
 
 /// Words of the longest name of a statistic.

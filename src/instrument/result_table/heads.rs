@@ -9,6 +9,7 @@ use crate::instrument::letters;
 use crate::instrument::raw::Row;
 use crate::instrument::shape::{self, Region};
 use crate::instrument::sniff::{Number, number};
+use crate::instrument::table_title;
 use crate::instrument::unit_text::{unbracketed, unit};
 use crate::instrument::words::folded;
 
@@ -159,19 +160,16 @@ impl Heads {
 
 /// `Bending rigidity (gf·cm²/cm)` alone over `Fabric,Warp,Weft`: it stands over the directions, statistics and numbers below it.
 fn spread_title(cells: &mut [Head], head: &Row<'_>, below: &Row<'_>, context: &Context<'_>) {
-    let Some(title) = cells.first().filter(|(says, ..)| says.names_value() && says.meta.is_none()).cloned()
-    else {
-        return;
-    };
+    let Some(says) = table_title::parameter(head, context) else { return };
     let heads_names = below.get(0).is_none_or(|text| context.facets(text).meta.is_some());
-    if head.filled().count() > 1 || !heads_names {
-        return;
-    }
+    let Some((_, text, place)) = cells.first().cloned().filter(|_| heads_names) else { return };
+    let title = (says, text, place);
     let mut is_over = false;
     for (index, cell) in cells.iter_mut().enumerate() {
         let says = below.get(index).map(|text| context.facets(text));
         // A direction reaches over the columns behind it.
         is_over = match says {
+            Some(says) if says.names_value() => false,
             Some(says) => says.direction.is_some() || says.statistic.is_some() || says.index.is_some(),
             None => is_over && index > 0,
         };
