@@ -89,6 +89,11 @@ pub enum TableColumn {
 }
 
 impl TableColumn {
+    /// Whether it names fabrics or specimens, row by row.
+    pub(super) fn names_rows(self) -> bool {
+        matches!(self, Self::Id | Self::Fabric | Self::Specimen | Self::Number)
+    }
+
     /// Whether its numbers may be those of specimens.
     pub(super) fn counts(self) -> bool {
         matches!(self, Self::Specimen | Self::Number)

@@ -11,6 +11,7 @@ use super::label::Label;
 use super::layout::{Column, Pair};
 use super::raw::Row;
 use super::sniff::{Number, number};
+use super::unit_text::split_unit;
 use super::written_direction::{self, Written};
 use crate::finding::ReadFact;
 
@@ -26,6 +27,8 @@ pub(super) struct KeyColumn {
     pub directions: Option<(Written, BTreeMap<String, Direction>)>,
     /// What the record is called by it.
     names: Names,
+    /// What stands before a state that is a number: `washes`.
+    before: Option<String>,
 }
 
 /// What an entry says of its record beside telling it from others.
@@ -154,7 +157,9 @@ fn column(
             .all(|text| has_number(text) || text.chars().all(char::is_alphabetic))
             .then(|| KeyColumn::new(index, HeaderKey::Specimen, Names::Itself)),
         None if are_states(head, entries, context) => {
-            Some(KeyColumn::new(index, HeaderKey::Sample, Names::State))
+            let are_numbers = entries.iter().all(|text| text.parse::<usize>().is_ok());
+            let before = are_numbers.then(|| split_unit(head).0);
+            Some(KeyColumn { before, ..KeyColumn::new(index, HeaderKey::Sample, Names::State) })
         }
         _ => None,
     }
@@ -166,13 +171,24 @@ fn is_label(text: &str, context: &Context<'_>) -> bool {
     label.direction.is_some() && label.rest.is_empty()
 }
 
-/// Whether a column that nothing is known of may have states of fabrics: words, `treatment` with `raw` and `washed`.
+/// Whether a column that nothing is known of may have states of fabrics: words, `treatment` with `raw` and `washed`, or numbers that do
+/// not count from 0 or 1, as cycles do: `washes` with 0 and 5.
 fn are_states(head: &str, entries: &BTreeSet<&str>, context: &Context<'_>) -> bool {
     let v = context.vocabulary;
     entries.len() > 1
         && v.key(head) != Some(HeaderKey::Circumstance)
         && matches!(context.column_name(head).role, None | Some(Role::Ignored))
-        && entries.iter().all(|text| text.contains(char::is_alphabetic) && v.direction(text).is_none())
+        && (entries.iter().all(|text| text.contains(char::is_alphabetic) && v.direction(text).is_none())
+            || (context.column_name(head).role.is_none() && !may_count(entries)))
+}
+
+/// Whether entries are no whole numbers, or may count.
+fn may_count(entries: &BTreeSet<&str>) -> bool {
+    let numbers: Option<BTreeSet<usize>> = entries.iter().map(|text| text.parse().ok()).collect();
+    numbers.is_none_or(|numbers| {
+        let first = numbers.first().copied().unwrap_or_default();
+        first <= 1 && numbers.iter().copied().eq(first..first + numbers.len())
+    })
 }
 
 /// Whether a text has a number from 1.
@@ -275,7 +291,7 @@ pub(super) fn records<'t>(
 
 impl KeyColumn {
     fn new(index: usize, key: HeaderKey, names: Names) -> Self {
-        Self { index, key, directions: None, names }
+        Self { index, key, directions: None, names, before: None }
     }
 
     /// Whether its entries are what its key says, and that alone.
@@ -287,8 +303,13 @@ impl KeyColumn {
     pub fn states_told(&self, head: &str, rows: &[&Row<'_>]) -> Option<ReadFact> {
         let entries = entries_below(self.index, rows).filter(|_| self.is_of_states())?;
         let entries: BTreeSet<&str> = entries.into_iter().collect();
-        let entries = entries.into_iter().map(str::to_string).collect();
+        let entries = entries.into_iter().map(|text| self.state(text)).collect();
         Some(ReadFact::StatesAsFabrics { column: head.trim().to_string(), entries })
+    }
+
+    /// What an entry says of the state of a fabric.
+    fn state(&self, text: &str) -> String {
+        self.before.as_ref().map_or_else(|| text.to_string(), |before| format!("{before} {text}"))
     }
 
     /// Whether its entries are states of a fabric, and not its name.
@@ -313,7 +334,8 @@ impl KeyColumn {
                 let specimen = label.specimen.map(|n| (HeaderKey::Specimen, n.to_string()));
                 [sample, direction, specimen].into_iter().flatten().collect()
             }
-            Names::Itself | Names::State => {
+            Names::State => vec![(self.key, self.state(text))],
+            Names::Itself => {
                 let direction = self.directions.as_ref().and_then(|(_, of_texts)| of_texts.get(text));
                 vec![(self.key, direction.map_or_else(|| text.to_string(), Direction::to_string))]
             }

@@ -63,16 +63,17 @@ pub(super) fn keys_below(
     rows: &[Row<'_>],
     context: &Context<'_>,
 ) -> Vec<Option<[Direction; 2]>> {
-    let mut keys = vec![None; blocks.len() + 1];
+    let mut lines: Vec<Vec<String>> = vec![Vec::new(); blocks.len() + 1];
     let mut gap = 0;
     for row in rows {
         while blocks.get(gap).is_some_and(|(_, last)| row.line > *last) {
             gap += 1;
         }
         if blocks.get(gap).is_none_or(|(first, _)| row.line < *first) {
-            keys[gap] = keys[gap].or_else(|| key_in(row, context));
+            lines[gap].extend(texts(row).filter(|text| !directions(text, context).is_empty()));
         }
     }
+    let keys: Vec<_> = lines.into_iter().map(|lines| key(lines.into_iter(), context)).collect();
     let is_below = keys[0].is_none() && keys[blocks.len()].is_some();
     keys.into_iter().skip(1).map(|key| key.filter(|_| is_below)).collect()
 }
@@ -95,16 +96,15 @@ fn is_strange(word: &str, v: Vocabulary<'_>) -> bool {
         && v.key(word) != Some(HeaderKey::Direction)
 }
 
-/// Whether a row is such a key, and heads no columns. `1. Warp` alone is a title.
+/// Whether a row is such a key or a half of one, and heads no columns. `1. Warp` alone is a title.
 pub(super) fn is_key(row: &Row<'_>, context: &Context<'_>) -> bool {
     row.get(0).is_some()
         && row.filled().all(|(_, cell)| !directions(&cell.text, context).is_empty())
-        && key(row.filled().map(|(_, cell)| cell.text.to_string()), context).is_some()
+        && (row.filled().all(|(_, cell)| cell.text.contains('=')) || key(texts(row), context).is_some())
 }
 
-/// What a row says as a key, also behind a word: `Note: 1 - weft; 2 - warp`.
-pub(super) fn key_in(row: &Row<'_>, context: &Context<'_>) -> Option<[Direction; 2]> {
-    key(row.filled().map(|(_, cell)| cell.text.to_string()), context)
+fn texts(row: &Row<'_>) -> impl Iterator<Item = String> {
+    row.filled().map(|(_, cell)| cell.text.to_string())
 }
 
 /// Whether a row numbers columns: nothing in its first cell, then 1, 2 and so on, and perhaps from 1 again, with statistics between.

@@ -289,8 +289,13 @@ fn title_above(above: &[Row<'_>], found: &[&Row<'_>], context: &Context<'_>) -> 
     let says: Vec<Facets> = found.iter().flat_map(|row| facets(row, context)).collect();
     let heads_directions =
         says.iter().any(|f| f.direction.is_some()) && !says.iter().any(Facets::names_value);
+    // `Yarn,Warp,Weft` heads something else.
+    let names_fabrics = found.iter().all(|row| {
+        row.get(0).is_none_or(|text| context.facets(text).meta.is_some_and(TableColumn::names_rows))
+    });
     let blanks = above.iter().rev().take_while(|row| row.is_blank()).count();
-    let at = above.len().checked_sub(blanks + 1).filter(|_| heads_directions && blanks < 2)?;
+    let at =
+        above.len().checked_sub(blanks + 1).filter(|_| heads_directions && names_fabrics && blanks < 2)?;
     table_title::parameter(&above[at], context).map(|_| at)
 }
 
@@ -305,7 +310,11 @@ fn begins_another(row: &Row<'_>, region: &Region<'_>, context: &Context<'_>) -> 
     }
     let behind =
         |row: &Row<'_>| row.filled().skip(1).map(|(i, c)| (i, c.text.to_string())).collect::<Vec<_>>();
-    let has_heads = row.get(0).is_some() && row.filled().count() > 1 && behind(row) == behind(last);
+    // The same heads once more go on with the table.
+    let has_heads = row.get(0).is_some()
+        && row.get(0) != last.get(0)
+        && row.filled().count() > 1
+        && behind(row) == behind(last);
     has_heads || table_title::parameter(row, context).is_some()
 }
 

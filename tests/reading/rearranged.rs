@@ -62,6 +62,12 @@ fn a_parameter_in_the_title_is_that_of_the_directions_below() {
         let text = format!("{title}\nFabric,Warp,Weft\nCotton,0.08,0.06\nWool,0.09,0.07\n");
         assert_eq!((values(&text), told(&read(&text), "R143")), (expected.to_vec(), 0), "{title}");
     }
+    // The same heads once more.
+    let again = "B (gf·cm²/cm)\nFabric,Warp,Weft\nCotton,0.08,0.06\nFabric,Warp,Weft\nWool,0.09,0.07\n";
+    assert_eq!(values(again), expected);
+    // Heads over something else below a title.
+    let yarns = "G (gf/(cm·deg))\nYarn,Warp,Weft\nTwist (1/mm),0.8,0.9\n";
+    assert!(attempt(yarns).is_err());
     // Titles of several parameters, or of none.
     for title in ["Bending and shear: B and G", "Results of cotton"] {
         let text = format!("{title}\nFabric,Warp,Weft\nCotton,0.08,0.06\n");
@@ -168,7 +174,9 @@ fn tables_beside_each_other() {
 
 #[test]
 fn keys_and_titles_below_a_table() {
-    for key in ["1 = weft, 2 = warp", "\"1 = weft, 2 = warp\"", "\nNote: 1 - weft; 2 - warp"] {
+    for key in
+        ["1 = weft, 2 = warp", "\"1 = weft, 2 = warp\"", "1 = weft\n2 = warp", "\nNote: 1 - weft; 2 - warp"]
+    {
         let found = read(&format!(
             "Fabric,B-1 (gf·cm²/cm),B-2 (gf·cm²/cm)\nCotton,0.05,0.08\nWool,0.06,0.09\n{key}\n"
         ));
@@ -259,6 +267,8 @@ fn columns_that_name_records() {
     let states = records("fabric,treatment,direction", &["Cotton,raw,warp", "Cotton,washed,warp"], false);
     assert_eq!(of(&states), [record("Cotton raw", WARP, 1), record("Cotton washed", WARP, 1)]);
     assert_eq!(told(&states, "R151"), 1);
+    let washes = records("fabric,washes,direction", &["Cotton,0,warp", "Cotton,5,warp"], false);
+    assert_eq!(of(&washes), [record("Cotton washes 0", WARP, 1), record("Cotton washes 5", WARP, 1)]);
     // Numbers may count cycles; they are told as not used.
     let loops = records("fabric,loop,direction", &["Cotton,1,warp", "Cotton,2,warp"], false);
     assert_eq!((loops.measurements.len(), told(&loops, "R104")), (1, 1));
