@@ -12,10 +12,12 @@ use super::value::is_gap;
 pub(super) fn to_values<'r>(rows: &'r [Row<'_>], context: &Context<'_>) -> Option<Vec<Row<'r>>> {
     let mut out: Option<Vec<Row<'r>>> = None;
     for (at, row) in rows.iter().enumerate() {
-        let above = rows[..at].last().filter(|row| row.get(0).is_some());
+        let above = rows[..at].last().filter(|above| row.get(0).is_none() && above.get(0).is_some());
         // In a record, rows without a name follow one another, and brackets are negative numbers.
-        let is_last = rows.get(at + 1).is_none_or(|next| next.is_blank() || next.get(0).is_some());
-        let of = above.filter(|above| is_last && is_of_deviations(row, above, context));
+        let of = above.filter(|above| {
+            rows.get(at + 1).is_none_or(|next| next.is_blank() || next.get(0).is_some())
+                && is_of_deviations(row, above, context)
+        });
         match (of, &mut out) {
             (None, None) => {}
             (None, Some(out)) => out.push(row.by_reference()),
@@ -44,11 +46,8 @@ fn add_to(values: &mut Row<'_>, deviations: &Row<'_>, context: &Context<'_>) {
 
 /// Whether every cell is a number in brackets, or behind the sign of a deviation, below a number, or a gap.
 fn is_of_deviations(row: &Row<'_>, above: &Row<'_>, context: &Context<'_>) -> bool {
-    // Most rows begin with a cell that is none.
-    let Some((first, _)) = row.filled().next().filter(|(_, cell)| deviation(&cell.text).is_some()) else {
-        return false;
-    };
-    first > 0
+    let has_deviation = row.filled().next().is_some_and(|(_, cell)| deviation(&cell.text).is_some());
+    has_deviation
         && row.filled().all(|(index, cell)| {
             let is_number = deviation(&cell.text)
                 .is_some_and(|text| matches!(number(text, context.decimal), Number::Value(_)));

@@ -31,7 +31,8 @@ pub(super) fn apart<'r>(rows: &'r [Row<'_>], context: &Context<'_>) -> Option<Ve
 /// The rows of heads in a paragraph below which two numbers stand in each cell.
 fn heads_of(rows: &[Row<'_>], context: &Context<'_>) -> Vec<(usize, Heads)> {
     let mut found: Vec<(usize, Heads)> = Vec::new();
-    for (at, row) in rows.iter().enumerate() {
+    // Most rows are those of curves.
+    for (at, row) in rows.iter().enumerate().filter(|(_, row)| !begins_with_number(row)) {
         let cells = row.filled().filter_map(|(i, cell)| Some((i, heads(&cell.text, context)?)));
         let heads: Heads = cells.collect();
         if !heads.is_empty() {
@@ -47,16 +48,17 @@ fn heads_of(rows: &[Row<'_>], context: &Context<'_>) -> Vec<(usize, Heads)> {
     found
 }
 
+fn begins_with_number(row: &Row<'_>) -> bool {
+    let first = row.cells.first().and_then(|cell| cell.text.as_bytes().first());
+    first.is_some_and(|byte| byte.is_ascii_digit() || matches!(byte, b'-' | b'.' | b'+'))
+}
+
 fn row_range<'r, 't>(rows: &'r [Row<'t>], range: Range<usize>) -> &'r [Row<'t>] {
     rows.get(range).unwrap_or_default()
 }
 
 /// A head that names two directions with a slash between them, once with each.
 fn heads(text: &str, context: &Context<'_>) -> Option<[String; 2]> {
-    // Most cells are numbers.
-    if text.starts_with(|c: char| c.is_ascii_digit() || c == '-') {
-        return None;
-    }
     text.match_indices('/').find_map(|(slash, _)| {
         let [first, second] = words_beside(text, slash);
         let directions =
