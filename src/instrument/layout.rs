@@ -137,11 +137,10 @@ pub(super) fn blocks<'t>(
             return Err(suggest::unknown_layout(context, row, &words));
         } else {
             if words.len() > 1 && has_numbers(row, context.decimal) {
-                let error = suggest::unknown_layout(context, row, &words);
-                if shape::heads_row(&rows[..scanner.at], row, context) {
-                    headed.get_or_insert_with(|| error.clone());
+                if headed.is_none() && shape::heads_row(&rows[..scanner.at], row, context) {
+                    headed = Some(suggest::unknown_layout(context, row, &words));
                 }
-                unread.get_or_insert(error);
+                unread.get_or_insert_with(|| suggest::unknown_layout(context, row, &words));
             }
             if let Some(Block::Table { region, .. }) = blocks.last()
                 && shape::continues(row, region, context)
