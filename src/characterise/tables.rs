@@ -11,7 +11,7 @@ use crate::quantity::Estimate;
 
 /// Difference between a table and the curves that is reported.
 const DISAGREEMENT: f64 = 0.05;
-/// The same of a thickness, which depends on the pressure: T0 and Tm of soft cloth lie so far apart.
+/// The same of a thickness, which depends on the pressure: at which one that of `fabric.toml` was measured is not known.
 const OTHER_PRESSURE: f64 = 0.5;
 
 /// Adds table values to the sheet. What was evaluated from curves stays; where the two differ, both are told.

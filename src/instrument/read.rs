@@ -275,8 +275,10 @@ fn sheets(
     ));
     // A letter of a direction names no sample, and no more does a mean.
     let mut names: Vec<&str> = of_sheets.iter().map(String::as_str).collect();
-    names.retain(|name| !letters.contains_key(name) && !means::names_mean(name, vocabulary));
-    names.dedup();
+    let mut seen = BTreeSet::new();
+    names.retain(|name| {
+        seen.insert(*name) && !letters.contains_key(name) && !means::names_mean(name, vocabulary)
+    });
     let samples = samples::of_sheets(&names, vocabulary);
     if samples.len() > 1 {
         let mut names = of_sheets.iter();

@@ -130,19 +130,20 @@ fn document_bytes(input: &Input) -> Option<Cow<'_, [u8]>> {
     }
 }
 
-/// Fabrics for cases: those of measurements, and those of documents and cards with the section that they state. `assumptions` close what a
-/// card leaves open.
-pub(super) fn fabrics_for_cases(
+/// Fabrics of measurements and of documents, and those of documents and cards with the section that they state, last. `assumptions` close
+/// what a card leaves open.
+fn fabrics_and_sections(
     inputs: &[Input],
     reading: &Reading,
-    (moduli, assumptions): (&[Modulus], &Assumptions),
+    (moduli, curves): (&[Modulus], Curves),
+    assumptions: &Assumptions,
     observer: &Observer,
 ) -> Result<(Vec<Fabric>, Vec<Failure>), Failure> {
     let Sorted { documents, others, mut failures } = Sorted::new(inputs, assumptions);
     failures.iter().for_each(|failure| observer.failed(failure));
-    let mut fabrics = Vec::new();
+    let (mut fabrics, mut ready) = (Vec::new(), Vec::new());
     if !others.is_empty() {
-        let (read, unread) = reading.sheets(&others, moduli, Curves::Kept, observer)?;
+        let (read, unread) = reading.sheets(&others, moduli, curves, observer)?;
         fabrics = read;
         failures.extend(unread);
     }
@@ -153,13 +154,26 @@ pub(super) fn fabrics_for_cases(
             }
             ReadDocument::Sections(sections) => {
                 observer.note(&format!("{}: a section; its own assumptions stand", path.display()));
-                fabrics.extend(sections.into_iter().map(|(sheet, made)| {
+                ready.extend(sections.into_iter().map(|(sheet, made)| {
                     let section = Some(Box::new(made));
                     Fabric { path: path.clone(), sheet, section }
                 }));
             }
         }
     }
+    fabrics.extend(ready);
+    Ok((fabrics, failures))
+}
+
+/// The same for cases, each with a name of its own.
+pub(super) fn fabrics_for_cases(
+    inputs: &[Input],
+    reading: &Reading,
+    (moduli, assumptions): (&[Modulus], &Assumptions),
+    observer: &Observer,
+) -> Result<(Vec<Fabric>, Vec<Failure>), Failure> {
+    let (mut fabrics, failures) =
+        fabrics_and_sections(inputs, reading, (moduli, Curves::Kept), assumptions, observer)?;
     distinguish_fabrics(&mut fabrics);
     Ok((fabrics, failures))
 }
@@ -188,33 +202,13 @@ pub fn sections_with(
     curves: Curves,
     observer: &Observer,
 ) -> Result<(Vec<Sectioned>, Vec<Failure>), Failure> {
-    let Sorted { documents, others, mut failures } = Sorted::new(inputs, assumptions);
-    failures.iter().for_each(|failure| observer.failed(failure));
-    let mut fabrics = Vec::new();
-    if !others.is_empty() {
-        let (read, unread) = reading.sheets(&others, &[assumptions.modulus], curves, observer)?;
-        fabrics = read;
-        failures.extend(unread);
-    }
-    let mut ready = Vec::new();
-    for (path, document) in documents {
-        match document {
-            ReadDocument::Sheets(sheets) => {
-                fabrics.extend(sheets.into_iter().map(|sheet| Fabric::of_sheet(path.clone(), sheet)));
-            }
-            ReadDocument::Sections(sections) => {
-                observer.note(&format!("{}: a section; its own assumptions stand", path.display()));
-                for finding in sections.iter().flat_map(|(_, made): &(_, Constitutive)| &made.findings) {
-                    observer.found(None, &finding.clone().at(Place::file(&path)));
-                }
-                let sectioned = |(sheet, made)| Sectioned { path: path.clone(), sheet, made };
-                ready.extend(sections.into_iter().map(sectioned));
-            }
-        }
-    }
-    if fabrics.is_empty() && failures.is_empty() && ready.is_empty() {
+    let (fabrics, mut failures) =
+        fabrics_and_sections(inputs, reading, (&[assumptions.modulus], curves), assumptions, observer)?;
+    if fabrics.is_empty() && failures.is_empty() {
         return Err(nothing_to_read());
     }
+    let (fabrics, ready): (Vec<Fabric>, Vec<Fabric>) =
+        fabrics.into_iter().partition(|fabric| fabric.section.is_none());
     let shared = paths_of_several(&fabrics);
     let mut done = Vec::new();
     for fabric in fabrics {
@@ -226,7 +220,13 @@ pub fn sections_with(
             }
         }
     }
-    done.extend(ready);
+    for Fabric { path, sheet, section } in ready {
+        let Some(made) = section.map(|made| *made) else { continue };
+        for finding in &made.findings {
+            observer.found(None, &finding.clone().at(Place::file(&path)));
+        }
+        done.push(Sectioned { path, sheet, made });
+    }
     Ok((done, failures))
 }
 
