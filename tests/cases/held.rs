@@ -116,6 +116,20 @@ fn loads_on_a_mesh_that_is_held_everywhere_are_told() {
     assert!(solved([8, 4], &unloaded).unwrap().load_factors.is_empty());
 }
 
+#[test]
+fn loads_on_held_dofs_alone_are_told() {
+    let clamped = "[[supports]]\nset = \"left\"\nkind = \"clamped\"\n";
+    let told = |set: &str| {
+        let load = format!(
+            "[[loads]]\nkind = \"point\"\nset = \"{set}\"\nvalue = \"1e-6 N\"\ndirection = [0, 0, 1]\n"
+        );
+        let result = solved([4, 4], &format!("{clamped}{load}")).unwrap();
+        (codes(&result).contains(&"S162"), result.solution.displacement.iter().all(|u| *u == 0.0))
+    };
+    assert_eq!(told("left"), (true, true));
+    assert_eq!(told("right"), (false, false));
+}
+
 /// The drilling stiffness takes a moment about the normal to the sheet; a body takes it by forces.
 #[test]
 fn moments_about_the_normal_are_told_unless_a_body_takes_them() {

@@ -347,7 +347,28 @@ fn cards_of_abaqus_and_calculix_give_the_section_back() {
         assert_eq!(read["origin"], "synthetic");
         let assumed = read["assumptions"].to_string().contains("the card states none");
         assert_eq!(assumed, target == "abaqus", "{read}");
+        // A case takes the card in the place of its fabric, and gives the same deflection.
+        let w_max = |input: &str| -> f64 {
+            let run = kesf(&["-q", "--json", "solve", "cases/seed_clamped.toml", input]);
+            assert_eq!(code(&run), 0, "{}", stderr(&run));
+            let document: Value = serde_json::from_slice(&run.stdout).unwrap();
+            document["solutions"][0]["results"]["w_max"]["value"].as_f64().unwrap()
+        };
+        let (ours, theirs) = (w_max("kesf_data/poplin"), w_max(card.to_str().unwrap()));
+        assert!((theirs / ours - 1.0).abs() < 1e-8, "{target}: {ours} {theirs}");
     }
+    // The same fabric in mm, N and t: its matrices are those of a board, which is told.
+    let in_mm = folder.path().join("mm.inp");
+    let text = "*SHELL GENERAL SECTION, ELSET=A, DENSITY=1.18E-10\n6.53, 1.34, 3.06, 0., 0., 0.0608, 0., 0.\n\
+                0., 8.47E-3, 0., 0., 0., 0., 5.09E-3, 0.\n0., 0., 0., 0., 3.28E-3\n\
+                *TRANSVERSE SHEAR STIFFNESS\n0.0507, 0.0507, 0.\n";
+    std::fs::write(&in_mm, text).unwrap();
+    let run = kesf(&["section", in_mm.to_str().unwrap()]);
+    assert!(
+        code(&run) == 0 && stderr(&run).contains("C021") && stderr(&run).contains("124.8 mm"),
+        "{}",
+        stderr(&run)
+    );
     let broken = folder.path().join("broken.inp");
     std::fs::write(&broken, "*SHELL GENERAL SECTION, ELSET=A, DENSITY=0.1\n1., six\n").unwrap();
     let run = kesf(&["section", broken.to_str().unwrap()]);
