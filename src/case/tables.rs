@@ -358,6 +358,11 @@ impl CaseTable {
                            section";
             return refused(at.key_place("shaking"), message);
         }
+        if at.has("shaking") && self.assumptions.as_ref().is_none_or(|a| a.law == Mode::Elastic) {
+            let message = "`shaking` works against friction, which an elastic sheet has none of: remove it, or add [assumptions] \
+                           law = \"friction\"";
+            return refused(at.key_place("shaking"), message);
+        }
         let (ring, layout) = sheet.ring(of_sheet)?;
         let message = "a drape has no [[probes]] and no [[checks]]: remove them";
         foreign(case, &["probes", "checks"], message)?;

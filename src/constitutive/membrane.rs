@@ -40,7 +40,15 @@ pub(super) fn matrix(
         let fabric = notes.sheet.name.clone();
         return Err(ConstitutiveError::Poisson { fabric, poisson: nu, rule, limit });
     }
+    let because = if alone { "tensile_law = \"curve\"" } else { "poisson_rule = \"zero\"" };
+    if rule == PoissonRule::Zero && nu != 0.0 && nu != Assumptions::default().poisson {
+        let (fabric, because) = (notes.fabric(), because.to_string());
+        notes.finding(SectionFact::PoissonWithoutEffect { fabric, poisson: nu, because });
+    }
     let (nu12, nu21) = (nu_g * (e1 / e2).sqrt(), nu_g * (e2 / e1).sqrt());
+    if nu12.abs().max(nu21.abs()) > 1.0 {
+        notes.finding(SectionFact::LargePoisson { fabric: notes.fabric(), ratios: [nu12, nu21] });
+    }
     let why = if alone {
         "tensile_law = \"curve\": the curves of warp and weft act each alone".into()
     } else {
@@ -91,6 +99,11 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
         let (fabric, chosen, used) = (notes.fabric(), chosen.to_string(), other.modulus.to_string());
         notes.finding(SectionFact::OtherModulus { fabric, chosen, used, direction });
     }
+    if let Some(slope) = known.into_iter().flatten().next() {
+        let default = Assumptions::default().tensile.si();
+        let stand_in = [assumptions.tensile.si(), default, slope.estimate.mean];
+        notes.not_used("tensile modulus", stand_in, "N/m");
+    }
     match known {
         [Some(warp), Some(weft)] => Ok(record([warp, weft], both(chosen, [warp, weft], notes), notes)),
         [Some(one), None] | [None, Some(one)] => {
@@ -101,7 +114,7 @@ fn moduli(assumptions: &Assumptions, notes: &mut Notes) -> Result<[f64; 2], Cons
         [None, None] => {
             let e = assumptions.tensile;
             notes.finding(SectionFact::NoTensileModulus { fabric: notes.fabric(), assumed: e.si() });
-            let stand_in = Estimate::single(e.si());
+            let stand_in = Estimate::stand_in(e.si());
             let values = [(&stand_in, InputSource::Tensile), (&stand_in, InputSource::Tensile)];
             Ok(write_down(values, (Provenance::Assumed, "not measured".into()), notes))
         }
@@ -166,9 +179,13 @@ fn stated(notes: &Notes) -> Option<String> {
 /// Writes two moduli of the sheet down and gives their values.
 fn record(slopes: [Slope; 2], source: Because, notes: &mut Notes) -> [f64; 2] {
     if slopes[0].direction == slopes[1].direction {
-        let Slope { direction, estimate, .. } = slopes[0];
-        let gives = [(Constant::Tensile(0), 1.0), (Constant::Tensile(1), 1.0)];
-        notes.origin(format!("E {direction}"), (estimate, slopes[0].source()), &gives);
+        let Slope { direction, estimate, modulus } = slopes[0];
+        let (own, other) = if direction == Direction::Warp { (0, 1) } else { (1, 0) };
+        let measured = (estimate, slopes[0].source());
+        notes.origin(format!("E {direction}"), measured, &[(Constant::Tensile(own), 1.0)]);
+        let across = direction.across();
+        let stand_in = (&Estimate::stand_in(estimate.mean), InputSource::Modulus(modulus.name(), across));
+        notes.origin(format!("E {across}"), stand_in, &[(Constant::Tensile(other), 1.0)]);
         return stated_values([estimate.mean; 2], source, notes);
     }
     write_down(slopes.map(|slope| (slope.estimate, slope.source())), source, notes)

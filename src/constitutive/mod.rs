@@ -86,6 +86,32 @@ pub struct Constitutive {
 /// assert!(broad.findings.iter().any(|f| f.code() == "C012"));
 /// ```
 pub fn section(sheet: &FabricSheet, assumptions: &Assumptions) -> Result<Constitutive, ConstitutiveError> {
+    made(sheet, assumptions, Weighing::Needed)
+}
+
+/// The same for what no weight and no inertia acts on: an areal density that nobody knows is 0 there.
+///
+/// # Errors
+/// See [`section`].
+pub fn section_without_mass(
+    sheet: &FabricSheet,
+    assumptions: &Assumptions,
+) -> Result<Constitutive, ConstitutiveError> {
+    made(sheet, assumptions, Weighing::Unneeded)
+}
+
+/// Whether what is computed depends on the mass of the sheet.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Weighing {
+    Needed,
+    Unneeded,
+}
+
+fn made(
+    sheet: &FabricSheet,
+    assumptions: &Assumptions,
+    weighing: Weighing,
+) -> Result<Constitutive, ConstitutiveError> {
     let mut notes = Notes { sheet, used: Vec::new(), origins: Vec::new(), findings: Vec::new() };
     // Also where a measured value stands before the assumed one.
     notes.positive("the assumed thickness", assumptions.thickness.si(), "m", "give a length above 0")?;
@@ -96,7 +122,7 @@ pub fn section(sheet: &FabricSheet, assumptions: &Assumptions) -> Result<Constit
     let d_m = membrane::matrix(g, assumptions, &mut notes)?;
     let d_b = bending::matrix(g, thickness, assumptions, &mut notes)?;
     let d_s = shear::transverse(g, assumptions, &mut notes)?;
-    let areal_density = areal_density(assumptions, &mut notes)?;
+    let areal_density = areal_density(assumptions, weighing, &mut notes)?;
     let section = ShellSection { d_m, d_b, d_s, areal_density, thickness }
         .checked()
         .map_err(|source| ConstitutiveError::Section { fabric: sheet.name.clone(), source })?;
@@ -131,9 +157,13 @@ fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Consti
     let ((estimate, from), source) = measured.or_else(stated).unwrap_or_else(|| {
         let t = assumptions.thickness;
         notes.finding(SectionFact::NoThickness { fabric: sheet.name.clone(), assumed: t.si() });
-        (single(t.si()), (Provenance::Assumed, "not measured".into()))
+        ((Estimate::stand_in(t.si()), InputSource::Thickness), (Provenance::Assumed, "not measured".into()))
     });
     let value = estimate.mean;
+    if source.0 != Provenance::Assumed || estimate.n > 0 {
+        let default = Assumptions::default().thickness.si();
+        notes.not_used("thickness", [assumptions.thickness.si(), default, value], "mm");
+    }
     notes.origin("thickness", (&estimate, from), &[(Constant::Thickness, 1.0)]);
     notes.positive("thickness", value, "m", "measure it (KES-FB3) or correct it in fabric.toml")?;
     notes.used("thickness", format!("{} mm", significant(value * 1e3)), source);
@@ -141,21 +171,37 @@ fn thickness(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, Consti
 }
 
 /// W, else `fabric.toml`, else what is assumed explicitly (kg/m²).
-fn areal_density(assumptions: &Assumptions, notes: &mut Notes) -> Result<f64, ConstitutiveError> {
+fn areal_density(
+    assumptions: &Assumptions,
+    weighing: Weighing,
+    notes: &mut Notes,
+) -> Result<f64, ConstitutiveError> {
     let sheet = notes.sheet;
     let measured = value(sheet, Parameter::W, None)
         .map(|w| (w, because(&[notes.known(Parameter::W, None)], Parameter::W.symbol())));
     let single = |w: f64| (Estimate::single(w), InputSource::ArealDensity);
     let stated = || sheet.info.areal_density.map(|w| (single(w), MEASURED_ELSEWHERE));
-    let assumed =
-        || assumptions.areal_density.map(|w| (single(w.si()), (Provenance::Assumed, "not measured".into())));
+    let assumed = || {
+        assumptions.areal_density.map(|w| {
+            let stand_in = (Estimate::stand_in(w.si()), InputSource::ArealDensity);
+            (stand_in, (Provenance::Assumed, "not measured".into()))
+        })
+    };
     let Some(((estimate, from), source)) = measured.or_else(stated).or_else(assumed) else {
+        if weighing == Weighing::Unneeded {
+            let why = "not known, and nothing of the case depends on it".into();
+            notes.used("areal density", "0 g/m²", (Provenance::Assumed, why));
+            return Ok(0.0);
+        }
         return Err(notes.missing(
             "areal density",
             "weigh the specimen and write areal_density = \"150 g/m²\" in its fabric.toml, or areal_density in the [assumptions] of the case (`kesf section`, `kesf export`: --areal-density)",
         ));
     };
     let value = estimate.mean;
+    if let Some(stand_in) = assumptions.areal_density {
+        notes.not_used("areal density", [stand_in.si(), f64::NAN, value], "g/m²");
+    }
     notes.origin("areal density", (&estimate, from), &[(Constant::ArealDensity, 1.0)]);
     notes.positive("areal density", value, "kg/m²", "correct it in its fabric.toml or result table")?;
     notes.used("areal density", format!("{} g/m²", significant(value * 1e3)), source);

@@ -40,6 +40,9 @@ impl Provenance {
     }
 }
 
+/// Values that differ by less than this part are the same.
+const ALIKE: f64 = 1e-3;
+
 /// A provenance and what it consists of.
 pub(super) type Because = (Provenance, Cow<'static, str>);
 
@@ -116,8 +119,8 @@ impl Notes<'_> {
         (estimate, source): (&Estimate, InputSource),
         gives: &[(Constant, f64)],
     ) {
-        let (estimate, gives) = (estimate.clone(), gives.to_vec());
-        self.origins.push(Origin { name: name.into(), estimate, source, gives });
+        let (estimate, status, gives) = (estimate.clone(), source.status(self.sheet), gives.to_vec());
+        self.origins.push(Origin { name: name.into(), estimate, status, source, gives });
     }
 
     /// The same for a parameter of the sheet; nothing if the sheet has none.
@@ -166,6 +169,15 @@ impl Notes<'_> {
         }
     }
 
+    /// C022: what the assumptions have for a value that is known already; nothing where they leave it at `default`.
+    pub fn not_used(&mut self, what: &str, [stand_in, default, used]: [f64; 3], unit: &str) {
+        if stand_in == default || (stand_in - used).abs() <= ALIKE * used.abs() {
+            return;
+        }
+        let (fabric, what, unit) = (self.fabric(), what.to_string(), unit.to_string());
+        self.finding(SectionFact::StandInNotUsed { fabric, what, stand_in, used, unit });
+    }
+
     pub fn missing(&self, what: impl Into<String>, cure: &'static str) -> ConstitutiveError {
         ConstitutiveError::Missing { fabric: self.sheet.name.clone(), what: what.into(), cure }
     }
@@ -201,8 +213,17 @@ impl Notes<'_> {
             (None, Some(weft), None) => (weft, Some(Direction::Weft)),
             (None, None, None) => return None,
         };
-        self.finding(SectionFact::OneRigidity { fabric: self.fabric(), known: known.1 });
-        self.origin_value(parameter, known.1, &constants);
-        Some([known.0.mean; 2])
+        let (estimate, direction) = known;
+        self.finding(SectionFact::OneRigidity { fabric: self.fabric(), known: direction });
+        let Some(direction) = direction else {
+            self.origin_value(parameter, None, &constants);
+            return Some([estimate.mean; 2]);
+        };
+        let (own, other) = if direction == Direction::Warp { (0, 1) } else { (1, 0) };
+        self.origin_value(parameter, Some(direction), &constants[own..=own]);
+        let across = Key { parameter, direction: Some(direction.across()) };
+        let stand_in = (&Estimate::stand_in(estimate.mean), InputSource::Value(across));
+        self.origin(across.to_string(), stand_in, &constants[other..=other]);
+        Some([estimate.mean; 2])
     }
 }

@@ -10,6 +10,8 @@ use nalgebra::{Matrix2, Matrix3};
 use serde::{Deserialize, Serialize};
 
 use super::{Assumptions, BendingCoupling, InputSource, PoissonRule, Torsion, TransverseShear};
+use crate::characterise::ValueStatus;
+use crate::instrument::Parameter;
 use crate::quantity::{Bands, Estimate};
 use crate::section::ShellSection;
 
@@ -18,8 +20,10 @@ use crate::section::ShellSection;
 pub struct MeasuredInput {
     /// Symbol and direction, e.g. `B warp`.
     pub name: String,
-    /// Value (SI) with its spread over repeats; a stand-in is a single value.
+    /// Value (SI) with its spread over repeats; a stand-in has none (n = 0).
     pub estimate: Estimate,
+    /// How far the value can be relied on.
+    pub status: ValueStatus,
     /// Where the value is.
     pub source: InputSource,
     /// Derivative of the section per logarithm of the input; 0 of one that only a law with friction has.
@@ -37,6 +41,20 @@ pub struct SectionDerivative {
     pub d_s: Matrix2<f64>,
     /// Of the mass per area (kg/m²).
     pub areal_density: f64,
+}
+
+impl MeasuredInput {
+    /// SI unit of the value, which its name tells.
+    pub fn unit(&self) -> &'static str {
+        let symbol = self.name.split(' ').next().unwrap_or_default();
+        match (self.name.as_str(), Parameter::from_symbol(symbol)) {
+            ("thickness", _) => Parameter::T0.si_unit(),
+            ("areal density", _) => Parameter::W.si_unit(),
+            (_, Some(parameter)) => parameter.si_unit(),
+            // A tensile modulus.
+            (_, None) => Parameter::G.si_unit(),
+        }
+    }
 }
 
 impl SectionDerivative {
@@ -82,8 +100,11 @@ pub struct Entry {
 /// that it depends on and that have no spread.
 ///
 /// # Errors
-/// Those names, in the order of the inputs.
+/// Those names, in the order of the inputs; none of a section whose inputs nobody states, as of a card of another program.
 pub fn bands(inputs: &[MeasuredInput], derivatives: &[f64]) -> Result<Bands, Vec<String>> {
+    if inputs.is_empty() {
+        return Err(Vec::new());
+    }
     let terms: Vec<(&Estimate, f64)> =
         inputs.iter().zip(derivatives).map(|(input, d)| (&input.estimate, *d)).collect();
     Bands::propagated(&terms).map_err(|first| {
@@ -135,6 +156,7 @@ pub(super) enum Constant {
 pub(super) struct Origin {
     pub name: String,
     pub estimate: Estimate,
+    pub status: ValueStatus,
     pub source: InputSource,
     pub gives: Vec<(Constant, f64)>,
 }
@@ -149,12 +171,12 @@ pub(super) fn inputs(
     let bias = bias.map_or(0.0, |o| o.estimate.mean);
     origins
         .into_iter()
-        .map(|Origin { name, estimate, source, gives }| {
+        .map(|Origin { name, estimate, status, source, gives }| {
             let mut derivative = SectionDerivative::default();
             for (constant, share) in gives {
                 derivative.add(&of_constant(section, assumptions, bias, constant), share);
             }
-            MeasuredInput { name, estimate, source, derivative }
+            MeasuredInput { name, estimate, status, source, derivative }
         })
         .collect()
 }

@@ -49,11 +49,19 @@ pub(super) fn in_plane(assumptions: &Assumptions, notes: &mut Notes) -> Result<f
             None => {
                 let g = assumptions.shear;
                 notes.finding(SectionFact::NoShearTest { fabric: notes.fabric(), assumed: g.si() });
-                notes.origin("G", (&Estimate::single(g.si()), InputSource::Shear), &[(Constant::Shear, 1.0)]);
+                notes.origin(
+                    "G",
+                    (&Estimate::stand_in(g.si()), InputSource::Shear),
+                    &[(Constant::Shear, 1.0)],
+                );
                 (g.si(), (Provenance::Assumed, "no shear test".into()))
             }
         },
     };
+    if source.0 != Provenance::Assumed {
+        let default = Assumptions::default().shear.si();
+        notes.not_used("shear stiffness", [assumptions.shear.si(), default, g], "N/m");
+    }
     let cure = match tension {
         0.0 => "look at the shear chart and its window",
         _ => {

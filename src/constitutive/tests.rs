@@ -4,7 +4,7 @@
 use super::*;
 use crate::characterise::{Key, Modulus, ValueStatus};
 use crate::instrument::Direction;
-use crate::quantity::{BendingRigidity, Estimate, LineForce};
+use crate::quantity::{ArealDensity, BendingRigidity, Estimate, Length, LineForce};
 use approx::assert_relative_eq;
 
 const WARP: Option<Direction> = Some(Direction::Warp);
@@ -190,8 +190,15 @@ fn one_direction_stands_for_both() {
             "{used:?}"
         );
     }
-    let e = c.inputs.iter().find(|i| i.name == "E warp").unwrap();
-    assert!(e.derivative.d_m[(0, 0)] > 0.0 && e.derivative.d_m[(1, 1)] > 0.0);
+    // The weft has none of the repeats of the warp, and no band of theirs.
+    let input = |name: &str| c.inputs.iter().find(|i| i.name == name).unwrap();
+    for (symbol, modulus) in [("E", true), ("B", false)] {
+        let [own, other] = ["warp", "weft"].map(|direction| input(&format!("{symbol} {direction}")));
+        assert_eq!((own.status, own.estimate.n), (ValueStatus::Measured, 1));
+        assert_eq!((other.status, other.estimate.n), (ValueStatus::Assumed, 0));
+        let d = |i: &MeasuredInput| if modulus { i.derivative.d_m } else { i.derivative.d_b };
+        assert!(d(own)[(0, 0)] > 0.0 && d(own)[(1, 1)] == 0.0 && d(other)[(1, 1)] > 0.0);
+    }
     // The weft has another slope: both have that one, and nothing is made up.
     warp.moduli.insert(("secant".into(), Direction::Weft), Estimate::single(2000.0));
     let c = section(&warp, &assumptions).unwrap();
@@ -232,4 +239,51 @@ fn what_cannot_be_assumed_is_an_error() {
     let mut bad = cloth();
     bad.values.insert(Key { parameter: Parameter::B, direction: WARP }, Estimate::single(-1e-6));
     assert_eq!(section(&bad, &assumptions).unwrap_err().code(), "C005");
+}
+
+#[test]
+fn what_is_stated_and_not_used_is_told() {
+    let told = |sheet: &FabricSheet, assumptions: Assumptions| codes(&section(sheet, &assumptions).unwrap());
+    let sheet = cloth();
+    let before = told(&sheet, Assumptions::default());
+    let with = |change: fn(&mut Assumptions)| {
+        let mut assumptions = Assumptions::default();
+        change(&mut assumptions);
+        let mut codes = told(&sheet, assumptions);
+        codes.retain(|code| !before.contains(code));
+        codes
+    };
+    assert_eq!(with(|a| a.thickness = Length(1e-3)), ["C022"]);
+    assert_eq!(with(|a| a.areal_density = Some(ArealDensity(0.5))), ["C022"]);
+    assert_eq!(with(|a| a.shear = LineForce(1.0)), ["C022"]);
+    assert_eq!(with(|a| a.tensile = LineForce(1.0)), ["C022"]);
+    assert_eq!(with(|a| (a.poisson, a.poisson_rule) = (0.2, PoissonRule::Zero)), ["C023"]);
+    assert!(with(|a| a.poisson_rule = PoissonRule::Zero).is_empty());
+    let mut unlike = cloth();
+    unlike.moduli.insert(("tangent_low".into(), Direction::Warp), Estimate::single(60_000.0));
+    unlike.moduli.insert(("tangent_low".into(), Direction::Weft), Estimate::single(1000.0));
+    assert!(told(&unlike, Assumptions::default()).contains(&"C024"));
+    // What stands in is used, and nothing is left over.
+    let bare = self::sheet(&[(Parameter::B, None, 1e-5)]);
+    let used = Assumptions {
+        thickness: Length(1e-3),
+        areal_density: Some(ArealDensity(0.5)),
+        shear: LineForce(1.0),
+        tensile: LineForce(1000.0),
+        ..Assumptions::default()
+    };
+    assert!(!told(&bare, used).contains(&"C022"));
+}
+
+#[test]
+fn what_no_weight_acts_on_needs_no_areal_density() {
+    let bare = self::sheet(&[(Parameter::B, None, 1e-5)]);
+    assert_eq!(section(&bare, &Assumptions::default()).unwrap_err().code(), "C004");
+    let made = section_without_mass(&bare, &Assumptions::default()).unwrap();
+    assert_eq!(made.section.areal_density, 0.0);
+    let used = made.used.iter().find(|used| used.name == "areal density").unwrap();
+    assert_eq!(used.provenance, Provenance::Assumed);
+    let cloth = cloth();
+    let both = [section, section_without_mass].map(|of| of(&cloth, &Assumptions::default()).unwrap());
+    assert_eq!(both[0], both[1]);
 }

@@ -11,26 +11,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::finding::Explanation;
 use crate::instrument::FabricInput;
-use crate::report::json::FindingEntry;
 use crate::report::table::PredictionRow;
 use crate::results::{FabricCard, FailureEntry};
 
+pub use crate::results::Complete;
 #[cfg(feature = "parquet")]
 pub use tables::{FoundDocument, LibraryDocument, MergedDocument, PartDocument, PartRows};
-
-/// A document with what was said of the work beside it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct Complete<D> {
-    /// The document.
-    #[serde(flatten)]
-    pub document: D,
-    /// What a reader must know; nothing here where the document has findings of its own.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub findings: Option<Vec<FindingEntry>>,
-    /// What gave no result.
-    pub failures: Vec<FailureEntry>,
-}
 
 /// A line on standard error with `--json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -19,6 +19,9 @@ pub enum ValueStatus {
 }
 
 impl ValueStatus {
+    /// All of them, the best first.
+    pub const ALL: [Self; 4] = [Self::Measured, Self::Inferred, Self::Assumed, Self::Doubtful];
+
     /// `measured`, `inferred`, `assumed` or `doubtful`.
     pub fn name(self) -> &'static str {
         match self {

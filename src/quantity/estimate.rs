@@ -22,6 +22,11 @@ impl Estimate {
         Self { mean: value, sd: None, n: 1, values: vec![value] }
     }
 
+    /// A value that nobody measured: it has no repeats.
+    pub fn stand_in(value: f64) -> Self {
+        Self { mean: value, sd: None, n: 0, values: Vec::new() }
+    }
+
     /// Mean and sample standard deviation of the repeats; `None` if there are none.
     pub fn of(values: &[f64]) -> Option<Self> {
         if values.is_empty() {

@@ -9,7 +9,7 @@ use nalgebra::{Matrix2, Matrix3};
 use serde::{Deserialize, Serialize};
 
 use crate::characterise::{FabricSheet, FrictionLaw, LawBand, MeanBranch, Settings, ValueStatus};
-use crate::constitutive::{Constitutive, Entry, Provenance, Used, entries};
+use crate::constitutive::{Constitutive, Entry, MeasuredInput, Provenance, SectionDerivative, Used, entries};
 use crate::finding::{Fields, Finding};
 use crate::instrument::{Direction, MeasuredResult, Origin, Parameter, Test};
 use crate::quantity::{Curve, Estimate};
@@ -240,6 +240,52 @@ pub struct SectionEntry {
     /// Entries on and above the diagonals with their bands, in their own units.
     #[serde(default)]
     pub uncertainty: Vec<Entry>,
+    /// The values that the section was made of.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<SectionInputEntry>,
+}
+
+/// A value that a section was made of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SectionInputEntry {
+    /// Symbol and direction, e.g. `B warp`.
+    pub name: String,
+    /// Mean over the repeats.
+    pub mean: f64,
+    /// Sample standard deviation.
+    pub sd: Option<f64>,
+    /// Number of repeats; 0 of a stand-in.
+    pub n: usize,
+    /// SI unit of both.
+    pub unit: Cow<'static, str>,
+    /// How far it can be relied on.
+    pub status: ValueStatus,
+    /// How the section depends on it, per logarithm of the input.
+    pub derivative: DerivativeEntry,
+}
+
+/// Derivative of a section, as far as it is not 0; units and components as those of the section.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(default)]
+pub struct DerivativeEntry {
+    /// Of the membrane stiffness.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub d_m: [[f64; 3]; 3],
+    /// Of the bending stiffness.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub d_b: [[f64; 3]; 3],
+    /// Of the transverse shear stiffness.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub d_s: [[f64; 2]; 2],
+    /// Of the mass per area.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub areal_density: f64,
+}
+
+fn is_zero<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// How a constant of a section was found.
@@ -296,6 +342,7 @@ pub fn section_document<'a>(
         thickness: made.section.thickness,
         assumptions: made.used.iter().map(assumption).collect(),
         uncertainty: entries(&made.section, &made.inputs),
+        inputs: made.inputs.iter().map(SectionInputEntry::new).collect(),
     };
     let units =
         [("areal_density", "kg/m²"), ("d_b", "N·m"), ("d_m", "N/m"), ("d_s", "N/m"), ("thickness", "m")];
@@ -310,6 +357,21 @@ pub fn section_document<'a>(
 fn assumption(used: &Used) -> (String, AssumptionEntry) {
     let Used { name, value, provenance, source } = used.clone();
     (name.into_owned(), AssumptionEntry { value, provenance, source })
+}
+
+impl SectionInputEntry {
+    fn new(input: &MeasuredInput) -> Self {
+        let MeasuredInput { name, estimate: e, status, derivative, .. } = input;
+        let SectionDerivative { d_m, d_b, d_s, areal_density } = derivative;
+        let derivative = DerivativeEntry {
+            d_m: rows3(d_m),
+            d_b: rows3(d_b),
+            d_s: rows2(d_s),
+            areal_density: *areal_density,
+        };
+        let (unit, status) = (input.unit().into(), *status);
+        Self { name: name.clone(), mean: e.mean, sd: e.sd, n: e.n, unit, status, derivative }
+    }
 }
 
 /// A document as text: two blanks of indentation and a final newline.

@@ -6,13 +6,13 @@ use nalgebra::{Matrix2, Matrix3};
 use serde::Deserialize;
 
 use crate::characterise::{FabricSheet, Key};
-use crate::constitutive::{Constitutive, Used};
+use crate::constitutive::{Constitutive, InputSource, MeasuredInput, SectionDerivative, Used};
 use crate::finding::errors;
 use crate::instrument::{Direction, FabricInfo, Origin, Parameter};
 use crate::quantity::Estimate;
 use crate::report::json::{
-    AssumptionEntry, EstimateEntry, ParameterEntry, SectionDocument, SectionEntry, SheetDocument, SheetEntry,
-    Stated,
+    AssumptionEntry, DerivativeEntry, EstimateEntry, ParameterEntry, SectionDocument, SectionEntry,
+    SectionInputEntry, SheetDocument, SheetEntry, Stated,
 };
 use crate::section::{SectionError, ShellSection};
 
@@ -195,7 +195,7 @@ fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentE
         section: section.checked()?,
         law: None,
         used: entry.assumptions.into_iter().map(used).collect(),
-        inputs: Vec::new(),
+        inputs: entry.inputs.into_iter().map(input).collect(),
         surface_friction: None,
         findings: Vec::new(),
     };
@@ -207,6 +207,20 @@ fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentE
     Ok((sheet, made))
 }
 
+/// An input of a section, whose sheet is not there.
+fn input(entry: SectionInputEntry) -> MeasuredInput {
+    let SectionInputEntry { name, mean, sd, n, status, derivative, .. } = entry;
+    let DerivativeEntry { d_m, d_b, d_s, areal_density } = derivative;
+    let derivative = SectionDerivative {
+        d_m: Matrix3::from_fn(|r, c| d_m[r][c]),
+        d_b: Matrix3::from_fn(|r, c| d_b[r][c]),
+        d_s: Matrix2::from_fn(|r, c| d_s[r][c]),
+        areal_density,
+    };
+    let estimate = Estimate { mean, sd, n, values: Vec::new() };
+    MeasuredInput { name, estimate, status, source: InputSource::Document, derivative }
+}
+
 fn info(title: String, origin: Origin) -> FabricInfo {
     FabricInfo { title, origin, ..Default::default() }
 }
@@ -214,7 +228,7 @@ fn info(title: String, origin: Origin) -> FabricInfo {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constitutive::{Assumptions, section};
+    use crate::constitutive::{Assumptions, entries, section};
     use crate::instrument::MeasuredResult;
     use crate::report::json::{section_document, sheet_document, text};
 
@@ -269,6 +283,14 @@ mod tests {
         };
         assert_eq!((&read[0].1.section, &read[0].1.used), (&made.section, &made.used));
         assert_eq!((read[0].0.name.as_str(), read[0].0.info.origin), ("köper", Origin::Published));
+        // With its inputs, so that it has the same bands.
+        let [from, back] = [&made, &read[0].1].map(|made| entries(&made.section, &made.inputs));
+        assert!(from.iter().any(|entry| entry.bands.is_some()));
+        assert_eq!(from, back);
+        let names = |made: &Constitutive| -> Vec<_> {
+            made.inputs.iter().map(|i| (i.name.clone(), i.unit(), i.status, i.estimate.n)).collect()
+        };
+        assert_eq!(names(&made), names(&read[0].1));
     }
 
     #[test]

@@ -108,11 +108,14 @@ row! {
         simulated_high: Option<f64>,
         /// Origin of the data of the fabric, as in `fabrics.csv`; nothing of a case with constants of its own.
         origin: Option<String>,
-        /// What weighs most against the value: `not converged`, `check failed`, `beyond linear`, `doubtful`, `assumed` or
-        /// `quick`; nothing where nothing does.
+        /// What weighs most against the value: `not converged`, `check failed`, `beyond linear`, `doubtful`, `assumed`,
+        /// `quick` or `inferred`; nothing where nothing does.
         status: Option<String>,
         /// What of its inputs speaks against it, e.g. `rests on an assumed E and a doubtful B warp`.
         remark: Option<String>,
+        /// The least reliable of the inputs that the value shows: `measured`, `inferred`, `assumed` or `doubtful`; nothing of a
+        /// case with constants of its own.
+        inputs: Option<String>,
     }
 }
 

@@ -9,7 +9,8 @@ use super::deflected::Deflected;
 use super::draped_stage;
 use super::failure::Failure;
 use super::folder::Folder;
-use super::rests_on;
+use super::judged;
+use super::rests_on::{self, Ground};
 use super::sampled::{self, SamplingEntry};
 use super::solved::{ModelEntry, mesh_fields, resultants};
 use super::task::Task;
@@ -83,6 +84,9 @@ pub struct DrapeEntry {
     /// Origin of the data of the fabric: `measured`, `published` or `synthetic`.
     #[serde(default)]
     origin: Option<String>,
+    /// What the shape rests on that is not to be relied on.
+    #[serde(default)]
+    rests_on: Vec<Ground>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -230,6 +234,7 @@ pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
         results: DrapeResults { drape },
         findings: d.findings.clone(),
         origin: task.origin_name(),
+        rests_on: judged::of_drape(task),
     }
 }
 
@@ -299,7 +304,7 @@ pub(super) fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
         simulated_half_width: None,
         simulated_band: Some(d.band().map(|b| 100.0 * b)),
         is_closed_loop: false,
-        status: rests_on::status(&rests_on::of_task(task, "drape_coefficient")),
+        status: rests_on::status(&judged::of_drape(task)),
     };
     Some(DrapePoint { law: task.case.law(), point })
 }
@@ -439,7 +444,9 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         outline: &d.outline,
         measured: measured(task).map(|(coefficient, _)| coefficient),
         values,
-        remarks: d.findings.iter().map(|f| f.message()).collect(),
+        remarks: (rests_on::warning(&judged::of_drape(task)).into_iter())
+            .chain(d.findings.iter().map(|f| f.message()))
+            .collect(),
     }
 }
 

@@ -13,6 +13,7 @@ mod cards;
 mod catalogue;
 mod checked;
 mod columns;
+mod complete;
 mod curve_table;
 mod deflected;
 #[cfg(feature = "pictures")]
@@ -62,6 +63,7 @@ pub use cards::{CardOptions, FabricCard, cards, cards_with, stated_crimp, write_
 pub(crate) use catalogue::Catalogue;
 pub use checked::{CheckDocument, Checked, check};
 pub use columns::Columns;
+pub use complete::Complete;
 pub use curve_table::{CurveTableError, fabrics_of_curves};
 #[cfg(feature = "pictures")]
 pub use drape_picture::{DrapePictures, drape_pictures};

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use super::bent::{self, BendingEntry};
+use super::complete::Complete;
 use super::deflected::{Deflected, PageSheet};
 use super::draped::{self, DrapeEntry, DrapePoint};
 use super::failure::Failure;
@@ -14,11 +15,13 @@ use super::sampled;
 use super::solved::{self, SolutionEntry};
 use super::task::Task;
 use super::tested::{self, TestEntry, Tested};
+use super::work;
 use crate::fields::curvatures_moved;
 use crate::finding::Finding;
 use crate::quantity::significant;
 use crate::report::chart::ParityPoint;
 use crate::report::html::{Figure, FigureKind};
+use crate::report::json::FindingEntry;
 use crate::report::table::PredictionRow;
 use crate::study::bending::BendingResult;
 use crate::study::{CaseResult, Drape, Status, StudyError};
@@ -115,7 +118,9 @@ impl Outcome {
     pub(super) fn entries(&self, task: &Task, timings: bool) -> Entries {
         match self {
             Self::Solved(result) => {
-                Entries::Solutions(vec![Solution::Solved(Box::new(solved::entry(task, result, timings)))])
+                let grounds = judged::of_solved(task, result);
+                let entry = solved::entry(task, result, grounds, timings);
+                Entries::Solutions(vec![Solution::Solved(Box::new(entry))])
             }
             Self::Draped(drape) => {
                 Entries::Solutions(vec![Solution::Draped(Box::new(draped::entry(task, drape)))])
@@ -136,6 +141,19 @@ impl Outcome {
         match self.entries(task, false) {
             Entries::Solutions(entries) => Document::solutions(entries),
             Entries::Comparisons(entries) => Document::comparisons(entries),
+        }
+    }
+
+    /// The same with what a reader of it must know, of the fabric and its section too, and with what gave nothing.
+    fn complete(&self, task: &Task) -> Complete<Document> {
+        let name = task.fabric_name();
+        let of_fabric = work::findings(std::iter::once(task)).into_iter();
+        let findings = of_fabric.map(|(fabric, finding)| FindingEntry::new(Some(&fabric), &finding));
+        let own = self.findings(task).into_iter().map(|finding| FindingEntry::new(name, finding));
+        Complete {
+            document: self.document(task),
+            findings: Some(findings.chain(own).collect()),
+            failures: self.failures(task).iter().map(Failure::entry).collect(),
         }
     }
 
@@ -163,7 +181,7 @@ impl Outcome {
     /// Those of the encoders and of the folder.
     pub fn write(&self, task: &Task, folder: &Folder) -> Result<Vec<Figure>, Failure> {
         let stem = task.stem();
-        folder.json(&format!("{stem}.json"), &self.document(task))?;
+        folder.json(&format!("{stem}.json"), &self.complete(task))?;
         if let Some(sheet) = self.deflected(task).filter(|_| folder.fields()) {
             sheet.write(folder)?;
         }

@@ -8,6 +8,7 @@ use super::fabric::FabricReport;
 use super::judged::of_inputs;
 use super::page_problems::BEYOND_LINEAR;
 use super::sheet_text::{BOTH, BOTH_LEGEND, mark};
+use super::solved;
 use crate::case::{Analysis, Case, Problem};
 use crate::characterise::{FabricSheet, Key};
 use crate::finding::Place;
@@ -33,7 +34,7 @@ pub(super) const HEADINGS: [&str; 9] = [
 pub(super) const CAPTION: &str = "B in gf·cm²/cm, G in gf/(cm·deg); E is the tangent at low load, or the secant where that is written; ? is doubtful, * rests on an assumption, ~ is inferred";
 
 /// What the columns of predictions are.
-const PREDICTIONS: &str = "drape coefficients in %, bending lengths of cantilevers in mm, largest deflections in mm or over the bending thickness t_b (a linear solve means something below 0.3), lowest frequencies in Hz, load factors of buckling; ? and * behind a prediction are of what it rests on";
+const PREDICTIONS: &str = "drape coefficients in %, bending lengths of cantilevers in mm, largest deflections in mm or over the bending thickness t_b (a linear solve means something below 0.3), lowest frequencies in Hz, load factors of buckling; ?, * and ~ behind a prediction are of what it rests on";
 
 /// B, G, E, T, W: KES units, except E in N/m.
 pub(super) fn cells(sheet: &FabricSheet) -> Vec<String> {
@@ -145,7 +146,15 @@ impl<'c> Prediction<'c> {
             Self::Deflection(case) => of_case(&report.deflections, case).map(|w| 1e3 * w),
             Self::Frequency(case) | Self::LoadFactor(case) => of_case(&report.eigenvalues, case),
         };
+        let in_plane = match self {
+            Self::Relative(case) | Self::Deflection(case) => predicted(case, solved::IN_PLANE),
+            _ => None,
+        };
         match (value, self, report.measured_drape()) {
+            (None, _, _) if in_plane.is_some() => {
+                let within = in_plane.map_or("-".into(), |u| significant(1e3 * u));
+                format!("{within} mm in plane{}", self.row(report).map(doubt).unwrap_or_default())
+            }
             (None, Self::Drape(..), Some(measured)) => {
                 format!("- ({} measured)", significant(1e2 * measured))
             }
@@ -270,7 +279,7 @@ mod tests {
             name: "poplin".into(),
             cells: vec!["-".into(); HEADINGS.len() - 1],
             predictions: vec![
-                PredictionRow { status: Some("doubtful".into()), ..row("drape", "drape_coefficient", 0.5) },
+                PredictionRow { inputs: Some("doubtful".into()), ..row("drape", "drape_coefficient", 0.5) },
                 row("cantilever", "bending_length warp", 0.02),
             ],
             relative_deflections: vec![("seed_clamped".into(), 1e-5)],

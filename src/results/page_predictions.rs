@@ -1,7 +1,6 @@
 //! Predictions of cases on the page: what a laboratory measures first, plates in a form without units after it.
 
 use super::fabric::FabricReport;
-use super::rests_on::OF_PLATE;
 use crate::quantity::significant;
 use crate::report::html::{Block, TableCell};
 use crate::report::number::counted;
@@ -174,7 +173,7 @@ pub(super) fn plates(reports: &[FabricReport]) -> Option<Block> {
             let deflection = report.relative_deflections.iter().find(|(name, _)| name == case);
             deflection.map_or("-".into(), |(_, value)| TableCell {
                 text: significant(*value),
-                remark: found(report, case, OF_PLATE).and_then(|row| row.remark.clone()).unwrap_or_default(),
+                remark: found(report, case, "w_max").and_then(|row| row.remark.clone()).unwrap_or_default(),
                 ..TableCell::default()
             })
         };

@@ -11,9 +11,9 @@ use super::failure::Failure;
 use super::folder::Sink;
 use crate::instrument::Source;
 
-const SCHEMA: &str = "kesf.record/1";
+const SCHEMA: &str = "kesf.record/2";
 
-/// `kesf.record/1`: a fabric whose files are written.
+/// `kesf.record/2`: a fabric whose files are written.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Record {
     schema: String,

@@ -1,60 +1,105 @@
 //! What a simulated value rests on that is not to be relied on: a constant of the section that nobody measured, or a
 //! measured value that a finding speaks against.
 
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
 use super::task::Task;
 use crate::characterise::ValueStatus;
-use crate::finding::{Fact, Finding, SectionFact};
-use crate::instrument::{Direction, Parameter, Test};
-use crate::report::table::{FabricRow, UnitSystem, fabric_rows};
+use crate::constitutive::{InputSource, MeasuredInput, law_inputs};
+use crate::instrument::{Parameter, Test};
+use crate::study::Prediction;
 
 /// Status of a value that a finding speaks against.
 pub(super) const DOUBTFUL: &str = "doubtful";
 
-/// What the deflection of a plate rests on.
-pub(super) const OF_PLATE: &str = "w_max";
-
 /// What a strip under its own weight rests on, before the direction.
 pub(super) const OF_STRIP: &str = "strip";
 
+/// The same of cloth that rubs while it bends.
+pub(super) const OF_STRIP_WITH_FRICTION: &str = "strip_friction";
+
+/// An input shows in a result that changes by more than this part of itself when the input changes by its own size.
+const SHOWS: f64 = 0.05;
+
 /// Something that a value rests on and that is not to be relied on.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Ground {
-    /// `Measured` of what was measured, but of warp and weft together.
-    pub status: ValueStatus,
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Ground {
+    /// `measured` of what was measured, but of warp and weft together.
+    pub(super) status: ValueStatus,
     /// `an assumed E`.
-    pub text: String,
+    pub(super) text: Cow<'static, str>,
 }
 
 impl Ground {
-    fn new(status: ValueStatus, text: impl Into<String>) -> Self {
-        Self { status, text: text.into() }
+    fn new(input: &MeasuredInput) -> Option<Self> {
+        let name = match input.source {
+            // One value for warp and weft.
+            InputSource::Tensile => "E",
+            _ => &input.name,
+        };
+        let text = match input.status {
+            ValueStatus::Doubtful => format!("a doubtful {name}"),
+            ValueStatus::Assumed if input.estimate.n == 0 => format!("an assumed {name}"),
+            ValueStatus::Assumed => format!("a {name} that rests on an assumption"),
+            ValueStatus::Inferred => format!("an inferred {name}"),
+            ValueStatus::Measured if name == "B" => "one B for warp and weft".into(),
+            ValueStatus::Measured => return None,
+        };
+        Some(Self { status: input.status, text: text.into() })
     }
 }
 
-/// Parameters of the fabric of a task, and what was found while they and the section were made.
-pub(super) fn known(task: &Task) -> (Vec<FabricRow>, Vec<Finding>) {
-    let Some(sheet) = task.fabric else { return Default::default() };
-    let of_section = task.section().ok().and_then(|(_, made)| made).map(|made| made.findings);
-    let findings = sheet.findings.iter().cloned().chain(of_section.into_iter().flatten());
-    (fabric_rows(sheet, UnitSystem::Si), findings.collect())
+/// What the fabric of a task was made of: the inputs of its section, and what its laws with friction have beside them.
+pub(super) fn known(task: &Task) -> Vec<MeasuredInput> {
+    let of_section = task.section().ok().and_then(|(_, made)| made).map(|made| made.inputs);
+    let mut inputs = of_section.unwrap_or_default();
+    for parameter in [Parameter::Hb, Parameter::Hg] {
+        let of_laws = task.fabric.map_or_else(Vec::new, |sheet| law_inputs(sheet, parameter));
+        let unknown = of_laws.into_iter().filter(|law| inputs.iter().all(|input| input.name != law.name));
+        inputs.extend(unknown.collect::<Vec<_>>());
+    }
+    inputs
 }
 
 /// What a quantity of the fabric of a task rests on that is not to be relied on.
 pub(super) fn of_task(task: &Task, quantity: &str) -> Vec<Ground> {
-    let (values, findings) = known(task);
-    grounds(&values, &findings, quantity)
+    grounds(&known(task), quantity)
 }
 
 /// `an assumed E`, `a doubtful B warp`; nothing for a value of `quantity` that rests on measured values alone.
-pub(super) fn grounds(rows: &[FabricRow], findings: &[Finding], quantity: &str) -> Vec<Ground> {
+pub(super) fn grounds(inputs: &[MeasuredInput], quantity: &str) -> Vec<Ground> {
     let (_, direction) = quantity.split_once(' ').unwrap_or_default();
-    let of_input = |symbol: &&str| match stand_in(symbol, direction, findings) {
-        // What stands in is one value, of whatever direction.
-        Some(stand_in) => std::iter::once(stand_in).chain(doubts(rows, symbol, "")).collect(),
-        None => doubts(rows, symbol, direction),
-    };
-    let mut grounds: Vec<Ground> = inputs(quantity).iter().flat_map(of_input).collect();
-    grounds.dedup();
+    let symbols = symbols(quantity);
+    of_inputs(symbols.iter().flat_map(|symbol| along(inputs, symbol, direction)))
+}
+
+/// The same of results that rest on these constants, in every direction: `E`, `G`, `B` and `W`.
+pub(super) fn of_symbols(inputs: &[MeasuredInput], symbols: &[&str]) -> Vec<Ground> {
+    of_inputs(symbols.iter().flat_map(|symbol| along(inputs, symbol, "")))
+}
+
+/// The same of a linear result, by what it changes with.
+pub(super) fn of_prediction(inputs: &[MeasuredInput], prediction: &Prediction) -> Vec<Ground> {
+    let shows = |derivative: &f64| derivative.abs() > SHOWS * prediction.value.abs();
+    let shown = inputs.iter().zip(&prediction.derivatives).filter(|(_, derivative)| shows(derivative));
+    of_inputs(shown.map(|(input, _)| input))
+}
+
+fn of_inputs<'i>(inputs: impl Iterator<Item = &'i MeasuredInput>) -> Vec<Ground> {
+    each_once(inputs.filter_map(Ground::new))
+}
+
+/// Grounds of several quantities.
+pub(super) fn each_once(all: impl IntoIterator<Item = Ground>) -> Vec<Ground> {
+    let mut grounds: Vec<Ground> = Vec::new();
+    for ground in all {
+        if !grounds.contains(&ground) {
+            grounds.push(ground);
+        }
+    }
     grounds
 }
 
@@ -63,9 +108,15 @@ pub(super) fn remark(grounds: &[Ground]) -> Option<String> {
     (!grounds.is_empty()).then(|| format!("rests on {}", joined(grounds)))
 }
 
+/// `Rests on an assumed E.`, for charts; nothing where all was measured, be it of warp and weft together.
+pub(super) fn warning(grounds: &[Ground]) -> Option<String> {
+    let weak: Vec<&Ground> = grounds.iter().filter(|g| g.status != ValueStatus::Measured).collect();
+    (!weak.is_empty()).then(|| format!("Rests on {}.", joined(weak)))
+}
+
 /// `an assumed E and a doubtful B warp`.
 pub(super) fn joined<'g>(grounds: impl IntoIterator<Item = &'g Ground>) -> String {
-    let texts: Vec<&str> = grounds.into_iter().map(|ground| ground.text.as_str()).collect();
+    let texts: Vec<&str> = grounds.into_iter().map(|ground| &*ground.text).collect();
     texts.join(" and ")
 }
 
@@ -74,138 +125,136 @@ pub(super) fn status(grounds: &[Ground]) -> ValueStatus {
     grounds.iter().map(|ground| ground.status).max().unwrap_or_default()
 }
 
-/// `an assumed E weft`: what stands for a stiffness in a direction (any, if it is empty) that the sheet does not have.
-fn stand_in(symbol: &str, direction: &str, findings: &[Finding]) -> Option<Ground> {
-    findings.iter().find_map(|finding| {
-        if let Fact::Section(SectionFact::OneRigidity { known: None, .. }) = &finding.fact {
-            return (symbol == "B").then(|| Ground::new(ValueStatus::Measured, "one B for warp and weft"));
-        }
-        let substitute = Substitute::of(&finding.fact)?;
-        let assumed = || Ground::new(ValueStatus::Assumed, format!("an assumed {}", substitute.name()));
-        substitute.replaces(symbol, direction).then(assumed)
-    })
+/// The inputs of a symbol in a direction (any, if it is empty) or of the fabric as a whole. One that stands for another was measured
+/// there.
+fn along<'i>(inputs: &'i [MeasuredInput], symbol: &str, direction: &str) -> Vec<&'i MeasuredInput> {
+    let of_symbol: Vec<_> = inputs.iter().filter(|input| is_of(input, symbol)).collect();
+    let is_along = |input: &&MeasuredInput| {
+        let along = input.name.split_once(' ').map_or("", |(_, along)| along);
+        symbol == "W" || along.is_empty() || direction.is_empty() || along == direction
+    };
+    let stands_in = of_symbol.iter().filter(|input| is_along(input)).any(|input| input.estimate.n == 0);
+    of_symbol.into_iter().filter(|input| stands_in || is_along(input)).collect()
 }
 
-/// A stiffness that nobody measured, and for which the section has another value.
-struct Substitute {
-    symbol: &'static str,
-    /// The direction; none for both.
-    direction: Option<Direction>,
-}
-
-impl Substitute {
-    fn of(fact: &Fact) -> Option<Self> {
-        let (symbol, known) = match fact {
-            Fact::Section(SectionFact::NoTensileModulus { .. }) => ("E", None),
-            Fact::Section(SectionFact::NoShearTest { .. }) => ("G", None),
-            Fact::Section(SectionFact::OneModulus { known, .. }) => ("E", Some(*known)),
-            Fact::Section(SectionFact::OneRigidity { known: Some(known), .. }) => ("B", Some(*known)),
-            _ => return None,
-        };
-        Some(Self { symbol, direction: known.map(Direction::across) })
-    }
-
-    /// Whether it stands for that stiffness in a direction; in any, if `along` is empty.
-    fn replaces(&self, symbol: &str, along: &str) -> bool {
-        self.symbol == symbol
-            && (along.is_empty() || self.direction.is_none_or(|direction| direction.name() == along))
-    }
-
-    fn name(&self) -> String {
-        self.direction.map_or(self.symbol.to_string(), |direction| format!("{} {direction}", self.symbol))
+fn is_of(input: &MeasuredInput, symbol: &str) -> bool {
+    match symbol {
+        "W" => input.name == "areal density",
+        _ => input.name.split(' ').next() == Some(symbol),
     }
 }
 
 /// Symbols of the inputs that a predicted quantity shows most of.
-fn inputs(quantity: &str) -> &'static [&'static str] {
+fn symbols(quantity: &str) -> Vec<&'static str> {
     let name = quantity.split(' ').next().unwrap_or_default();
-    let test = if name == "E" {
-        Some(Test::Tensile)
-    } else {
-        Parameter::from_symbol(name).and_then(Parameter::test)
-    };
-    match test {
-        Some(test) => test.spec().stiffness.as_ref().map_or(&[], |shown| std::slice::from_ref(&shown.symbol)),
-        None if name.starts_with("drape_") => &["E", "G", "B", "W"],
-        None if name == OF_STRIP => &["B", "W"],
-        None if name == OF_PLATE => &["B"],
-        None => &[],
-    }
-}
-
-/// Values of the fabric that are not to be relied on, in a direction (any, if it is empty) or of the fabric as a whole.
-fn doubts(rows: &[FabricRow], symbol: &str, direction: &str) -> Vec<Ground> {
-    let is_input = |parameter: &str| parameter.split(' ').next() == Some(symbol);
-    let is_along = |along: Option<&str>| along.is_none_or(|along| direction.is_empty() || along == direction);
-    let rows = rows.iter().filter(|row| is_input(&row.parameter) && is_along(row.direction.as_deref()));
-    rows.filter_map(|row| {
-        let name = [Some(symbol), row.direction.as_deref()];
-        let name = name.into_iter().flatten().collect::<Vec<_>>().join(" ");
-        match row.status.as_str() {
-            DOUBTFUL => Some(Ground::new(ValueStatus::Doubtful, format!("a doubtful {name}"))),
-            "assumed" => {
-                Some(Ground::new(ValueStatus::Assumed, format!("a {name} that rests on an assumption")))
-            }
-            _ => None,
+    let parameter = Parameter::from_symbol(name);
+    let test = if name == "E" { Some(Test::Tensile) } else { parameter.and_then(Parameter::test) };
+    let of_test = test.and_then(|test| test.spec().stiffness.as_ref()).map(|shown| shown.symbol);
+    match (of_test, parameter) {
+        // The width of a loop with friction is one of its inputs.
+        (Some(stiffness), Some(Parameter::Hb | Parameter::Hg)) => {
+            [Some(stiffness), parameter.map(Parameter::symbol)].into_iter().flatten().collect()
         }
-    })
-    .collect()
+        (Some(stiffness), _) => vec![stiffness],
+        (None, _) if test.is_some() => Vec::new(),
+        (None, _) if name == OF_STRIP => vec!["B", "W"],
+        (None, _) if name == OF_STRIP_WITH_FRICTION => vec!["B", "2HB", "W"],
+        (None, _) => Vec::new(),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::characterise::Key;
+    use crate::constitutive::SectionDerivative;
+    use crate::instrument::Direction;
+    use crate::quantity::Estimate;
 
-    fn sheet() -> ([FabricRow; 3], [Finding; 1]) {
-        let row = |parameter: &str, direction: &str, status: &str| FabricRow {
-            parameter: parameter.into(),
-            direction: Some(direction.into()),
-            status: status.into(),
-            ..FabricRow::default()
-        };
-        let assumed = SectionFact::NoTensileModulus { fabric: "a".into(), assumed: 5000.0 };
-        let rows =
-            [row("B", "warp", "doubtful"), row("B", "weft", "measured"), row("2HB", "weft", "doubtful")];
-        (rows, [Finding::new(assumed)])
+    fn input(name: &str, status: ValueStatus, estimate: Estimate) -> MeasuredInput {
+        let key = Key { parameter: Parameter::B, direction: Some(Direction::Warp) };
+        MeasuredInput {
+            name: name.into(),
+            estimate,
+            status,
+            source: InputSource::Value(key),
+            derivative: SectionDerivative::default(),
+        }
     }
 
-    fn said(rows: &[FabricRow], findings: &[Finding], quantity: &str) -> String {
-        let remark = remark(&grounds(rows, findings, quantity)).unwrap_or_default();
+    fn measured(name: &str, status: ValueStatus) -> MeasuredInput {
+        input(name, status, Estimate::single(1.0))
+    }
+
+    fn stand_in(name: &str) -> MeasuredInput {
+        input(name, ValueStatus::Assumed, Estimate::stand_in(1.0))
+    }
+
+    fn inputs() -> Vec<MeasuredInput> {
+        let e = |name| MeasuredInput { source: InputSource::Tensile, ..stand_in(name) };
+        vec![
+            e("E warp"),
+            e("E weft"),
+            measured("B warp", ValueStatus::Doubtful),
+            measured("B weft", ValueStatus::Measured),
+            measured("areal density", ValueStatus::Measured),
+            measured("2HB weft", ValueStatus::Inferred),
+        ]
+    }
+
+    fn said(inputs: &[MeasuredInput], quantity: &str) -> String {
+        let remark = remark(&grounds(inputs, quantity)).unwrap_or_default();
         remark.trim_start_matches("rests on ").to_string()
     }
 
     #[test]
     fn what_is_doubtful_or_assumed_goes_on_to_what_is_predicted() {
-        let (rows, findings) = sheet();
-        let remark = |quantity: &str| said(&rows, &findings, quantity);
-        let status = |quantity: &str| super::status(&grounds(&rows, &findings, quantity));
+        let inputs = inputs();
+        let remark = |quantity: &str| said(&inputs, quantity);
+        let status = |quantity: &str| super::status(&grounds(&inputs, quantity));
         assert_eq!((status("B warp"), status("B weft")), (ValueStatus::Doubtful, ValueStatus::Measured));
-        assert_eq!(
-            (status("E warp"), status("drape_coefficient")),
-            (ValueStatus::Assumed, ValueStatus::Doubtful)
-        );
+        let drape = of_symbols(&inputs, &["E", "G", "B", "W"]);
+        assert_eq!((status("E warp"), super::status(&drape)), (ValueStatus::Assumed, ValueStatus::Doubtful));
         assert_eq!(remark("strip warp"), "a doubtful B warp");
         assert_eq!(remark("strip weft"), "");
         assert_eq!(remark("E warp"), "an assumed E");
-        assert_eq!(remark("drape_coefficient"), "an assumed E and a doubtful B warp");
-        assert_eq!((remark("G warp"), remark(OF_PLATE)), (String::new(), "a doubtful B warp".into()));
+        assert_eq!(remark("2HB weft"), "an inferred 2HB weft");
+        assert_eq!(joined(&drape), "an assumed E and a doubtful B warp");
+        assert_eq!(remark("strip_friction weft"), "an inferred 2HB weft");
+        assert_eq!((remark("G warp"), remark("T0")), (String::new(), String::new()));
+        assert_eq!(super::remark(&of_symbols(&inputs, &["B"])).unwrap(), "rests on a doubtful B warp");
+    }
+
+    #[test]
+    fn a_weight_that_nobody_weighed_is_told_of_what_it_moves() {
+        let inputs = [measured("B warp", ValueStatus::Measured), stand_in("areal density")];
+        assert_eq!(said(&inputs, "strip warp"), "an assumed areal density");
+        let prediction = |derivatives: [f64; 2]| Prediction {
+            quantity: "w_max".into(),
+            unit: "m",
+            value: -2.0,
+            derivatives: derivatives.to_vec(),
+            bands: None,
+            without_spread: Vec::new(),
+            repeats: None,
+        };
+        assert_eq!(joined(&of_prediction(&inputs, &prediction([2.0, -2.0]))), "an assumed areal density");
+        assert!(of_prediction(&inputs, &prediction([2.0, 1e-3])).is_empty());
     }
 
     /// A sheet with tests of the warp alone: what is said of the weft rests on them.
     #[test]
     fn one_direction_that_stands_for_both_is_no_measurement_of_the_other() {
-        let (rows, _) = sheet();
-        let (fabric, known) = ("a".to_string(), Direction::Warp);
-        let modulus = "tangent_low".to_string();
-        let findings = [
-            Finding::new(SectionFact::OneModulus { fabric: fabric.clone(), known, modulus }),
-            Finding::new(SectionFact::OneRigidity { fabric, known: Some(known) }),
+        let inputs = [
+            measured("E warp", ValueStatus::Measured),
+            stand_in("E weft"),
+            measured("B warp", ValueStatus::Doubtful),
+            stand_in("B weft"),
         ];
-        let remark = |quantity: &str| said(&rows, &findings, quantity);
+        let remark = |quantity: &str| said(&inputs, quantity);
         assert_eq!((remark("E warp"), remark("E weft")), (String::new(), "an assumed E weft".into()));
         assert_eq!(remark("strip warp"), "a doubtful B warp");
-        assert_eq!(remark("strip weft"), "an assumed B weft and a doubtful B warp");
-        let one = [Finding::new(SectionFact::OneRigidity { fabric: "a".into(), known: None })];
-        assert_eq!(said(&rows[1..], &one, "strip warp"), "one B for warp and weft");
+        assert_eq!(remark("strip weft"), "a doubtful B warp and an assumed B weft");
+        assert_eq!(said(&[measured("B", ValueStatus::Measured)], "strip warp"), "one B for warp and weft");
     }
 }

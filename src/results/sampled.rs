@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::columns::Columns;
 use super::task::Task;
+use crate::characterise::ValueStatus;
 use crate::constitutive::MeasuredInput;
 use crate::quantity::{Sampled, significant};
 use crate::report::table::PredictionRow;
@@ -73,7 +74,11 @@ pub struct MeasuredInputEntry {
     name: String,
     mean: f64,
     sd: Option<f64>,
+    /// Number of repeats; 0 of a stand-in.
     n: usize,
+    /// How far the value can be relied on.
+    #[serde(default)]
+    status: ValueStatus,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -90,7 +95,7 @@ impl MeasuredInputEntry {
     /// The entry of an input.
     pub(super) fn new(input: &MeasuredInput) -> Self {
         let e = &input.estimate;
-        Self { name: input.name.clone(), mean: e.mean, sd: e.sd, n: e.n }
+        Self { name: input.name.clone(), mean: e.mean, sd: e.sd, n: e.n, status: input.status }
     }
 }
 

@@ -302,12 +302,10 @@ fn repeats(sheet: &FabricSheet, c: &Constitutive) -> Columns {
     let mut columns = Columns::new(["repeats of", "mean", "SD", "n", "unit", "outlier"]);
     for input in &c.inputs {
         let e = &input.estimate;
-        let (unit, n) = match &input.source {
-            InputSource::Value(key) => (key.parameter.si_unit(), repeats_text(e.n as u64, e.sd)),
-            InputSource::Modulus(..) => (FORCE, repeats_text(e.n as u64, e.sd)),
-            InputSource::Thickness => (Parameter::T0.si_unit(), "-".into()),
-            InputSource::ArealDensity => (Parameter::W.si_unit(), "-".into()),
-            InputSource::Tensile | InputSource::Shear => (FORCE, "stand-in".into()),
+        let n = match &input.source {
+            _ if e.n == 0 => "stand-in".into(),
+            InputSource::Thickness | InputSource::ArealDensity => "-".into(),
+            _ => repeats_text(e.n as u64, e.sd),
         };
         let outlier = match input.source {
             InputSource::Value(key) => sheet.findings.iter().find_map(|f| outlier(key, &f.fact)),
@@ -315,7 +313,7 @@ fn repeats(sheet: &FabricSheet, c: &Constitutive) -> Columns {
         };
         let sd = e.sd.map_or("-".into(), significant);
         let outlier = outlier.unwrap_or_default();
-        columns.row([input.name.clone(), significant(e.mean), sd, n, unit.into(), outlier]);
+        columns.row([input.name.clone(), significant(e.mean), sd, n, input.unit().into(), outlier]);
     }
     columns
 }

@@ -188,7 +188,12 @@ impl Task<'_, '_> {
         }
         match (self.fabric, self.case.problem.section()) {
             (Some(sheet), _) => {
-                let made = constitutive::section(sheet, &self.assumptions())?;
+                let of_sheet = if self.case.needs_mass() {
+                    constitutive::section
+                } else {
+                    constitutive::section_without_mass
+                };
+                let made = of_sheet(sheet, &self.assumptions())?;
                 Ok((made.section.clone(), Some(made)))
             }
             (None, Some(table)) => {

@@ -157,6 +157,9 @@ pub struct TestEntry {
     /// Origin of the data of the fabric: `measured`, `published` or `synthetic`.
     #[serde(default)]
     origin: Option<String>,
+    /// What the simulated stiffness rests on that is not to be relied on.
+    #[serde(default)]
+    rests_on: Vec<Ground>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -202,6 +205,7 @@ pub(super) fn entry(task: &Task, t: &Tested) -> TestEntry {
         simulated: c.map(|c| c.simulated.y.clone()),
         measured: c.map(|c| c.measured.y.clone()),
         origin: task.origin_name(),
+        rests_on: t.grounds.clone(),
     }
 }
 

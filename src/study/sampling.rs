@@ -21,7 +21,9 @@ use crate::case::{
     BendingTest, DrapeProblem, FabricMaterial, InstrumentTest, Problem, SamplingPlan, ShellSpecimen,
 };
 use crate::characterise::FabricSheet;
-use crate::constitutive::{self, Assumptions, Constitutive, MeasuredInput, law_inputs, perturbed};
+use crate::constitutive::{
+    self, Assumptions, Constitutive, InputSource, MeasuredInput, law_inputs, perturbed,
+};
 use crate::finding::{Finding, Place, StudyFact};
 use crate::instrument::{Direction, Parameter, Test};
 use crate::law::Mode;
@@ -63,6 +65,18 @@ pub struct SampledQuantity {
 }
 
 impl Sampling {
+    /// No results, and why.
+    fn without_bands(case: &Case, plan: &SamplingPlan, why: StudyFact) -> Self {
+        Self {
+            inputs: Vec::new(),
+            points: plan.points,
+            seed: plan.seed,
+            exact: Vec::new(),
+            quantities: Vec::new(),
+            findings: vec![Finding::new(why).at(Place::file(&case.path))],
+        }
+    }
+
     /// The result of a name.
     pub fn of(&self, quantity: &str) -> Option<&SampledQuantity> {
         self.quantities.iter().find(|q| q.quantity == quantity)
@@ -96,6 +110,11 @@ pub fn sample(
     let Some(FabricMaterial { assumptions, sampling: Some(plan), .. }) = case.fabric() else {
         return Ok(None);
     };
+    // Neither the sheet nor its curves are there, of which a section at other values could be made.
+    if made.inputs.iter().all(|input| input.source == InputSource::Document) {
+        let fact = StudyFact::StatedSection { fabric: sheet.name.clone() };
+        return Ok(Some(Sampling::without_bands(case, plan, fact)));
+    }
     let options = &Options { threads: 1, ..Options::default() };
     let mut inputs = made.inputs.clone();
     let sampler =
@@ -292,7 +311,9 @@ impl Sampler<'_> {
         values: &[f64],
     ) -> Vec<f64> {
         let (sheet, assumptions) = perturbed(sheet, self.assumptions, inputs, values);
-        let made = constitutive::section(&sheet, &assumptions).ok();
+        let of_sheet =
+            if self.case.needs_mass() { constitutive::section } else { constitutive::section_without_mass };
+        let made = of_sheet(&sheet, &assumptions).ok();
         let readings = made.and_then(|made| (self.evaluate)(&sheet, &made).ok()).unwrap_or_default();
         let value = |q: &SampledQuantity| {
             readings.iter().find(|r| r.quantity == q.quantity).map_or(f64::NAN, |r| r.value)

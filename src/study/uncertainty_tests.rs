@@ -11,7 +11,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use super::super::{Case, CaseResult, PreparedCase, build};
 use super::*;
 use crate::analytical::Plate;
-use crate::characterise::{FabricSheet, Key};
+use crate::characterise::{FabricSheet, Key, ValueStatus};
 use crate::constitutive::{Assumptions, InputSource, section};
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::Estimate;
@@ -45,6 +45,7 @@ fn input(name: &str, derivative: SectionDerivative) -> MeasuredInput {
     MeasuredInput {
         name: name.into(),
         estimate: Estimate::single(1.0),
+        status: ValueStatus::Measured,
         source: InputSource::Shear,
         derivative,
     }

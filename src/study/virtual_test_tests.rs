@@ -1,6 +1,7 @@
 //! References: closed forms, published estimates, differences of whole solutions, and Monte Carlo.
 
 use super::*;
+use crate::characterise::ValueStatus;
 use crate::constitutive::InputSource;
 use approx::assert_relative_eq;
 use nalgebra::{Matrix2, Matrix3};
@@ -109,6 +110,7 @@ fn bands_agree_with_monte_carlo() {
         .map(|(name, estimate, derivative)| MeasuredInput {
             name: name.into(),
             estimate,
+            status: ValueStatus::Measured,
             source: InputSource::Shear,
             derivative,
         })

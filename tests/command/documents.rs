@@ -125,7 +125,7 @@ impl Seen {
             } else if path.extension().is_some_and(|ending| ending == "json") {
                 let document: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
                 // By them a run goes on: they are for the program alone.
-                if document["schema"] != "kesf.record/1" {
+                if document["schema"] != "kesf.record/2" {
                     self.check(&path.display().to_string(), &document);
                     if let Some([file, _]) = readers(&document) {
                         let bytes = fs::read(&path).unwrap();

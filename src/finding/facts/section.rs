@@ -92,6 +92,37 @@ super::facts! {
             areal_density: f64,
         } = "{fabric}: a sheet of these matrices is {} thick and weighs {} kg/m², which no cloth does: the values are taken as SI (N, m, kg); \
              convert a card in mm, N and t first", in_unit(*thickness, "mm"), significant(*areal_density);
+        /// A stand-in beside a value that is known.
+        "C022" StandInNotUsed {
+            /// Name of the fabric.
+            fabric: String,
+            /// What it stands in for.
+            what: String,
+            /// The stand-in (SI).
+            stand_in: f64,
+            /// The value that is used (SI).
+            used: f64,
+            /// SI unit of both.
+            unit: String,
+        } = "{fabric}: the {what} of {} is not used: it stands in where nothing is known, and {} is", in_unit(*stand_in, unit), in_unit(*used, unit);
+        /// A Poisson's ratio that nothing asks for.
+        "C023" PoissonWithoutEffect {
+            /// Name of the fabric.
+            fabric: String,
+            /// The ratio.
+            poisson: f64,
+            /// What makes it 0.
+            because: String,
+        } = "{fabric}: Poisson's ratio {poisson} has no effect: {because} makes it 0; remove one of them";
+        /// A Poisson's ratio above 1 in one direction.
+        "C024" LargePoisson {
+            /// Name of the fabric.
+            fabric: String,
+            /// ν12 and ν21.
+            ratios: [f64; 2],
+        } = "{fabric}: the assumed Poisson's ratio makes nu12 {} and nu21 {}, as warp and weft differ so much: stretched along one yarn the sheet \
+             would narrow by more than it grows; state a smaller one, or poisson_rule = \"major\"",
+            significant(ratios[0]), significant(ratios[1]);
         /// No hysteresis of bending.
         "C017" NoHysteresis {
             /// Name of the fabric.

@@ -369,7 +369,12 @@ super::facts! {
         "S117" NoBand {
             /// Their names.
             inputs: Vec<String>,
-        } = "no band where a single value is all there is of: {}", inputs.join(", ");
+        } = "no band where no spread is known of: {}", inputs.join(", ");
+        /// Bands of a section that a document or a card states.
+        "S163" StatedSection {
+            /// The fabric.
+            fabric: String,
+        } = "no band of {fabric}: its section is stated, and cannot be made again at other values; give the measurements or the sheet for [uncertainty]";
         /// Fabrics without a friction law for a case that needs one.
         "S118" WithoutLaw {
             /// Their names.

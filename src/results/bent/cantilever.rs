@@ -22,8 +22,13 @@ impl BendingReport for Vec<Cantilever> {
         self.iter().flat_map(|c| cantilever_rows(task, c)).collect()
     }
 
-    fn write_charts(&self, task: &Task, folder: &Folder) -> Result<Vec<String>, Failure> {
-        let chart = folder.chart(&task.stem(), || chart::profile(&plot(task, self)))?;
+    fn write_charts(
+        &self,
+        task: &Task,
+        warning: Option<String>,
+        folder: &Folder,
+    ) -> Result<Vec<String>, Failure> {
+        let chart = folder.chart(&task.stem(), || chart::profile(&plot(task, self, warning)))?;
         Ok(chart.into_iter().collect())
     }
 
@@ -85,7 +90,7 @@ fn line(task: &Task, c: &Cantilever) -> Vec<String> {
     ]
 }
 
-fn plot(task: &Task, tests: &[Cantilever]) -> ProfilePlot {
+fn plot(task: &Task, tests: &[Cantilever], warning: Option<String>) -> ProfilePlot {
     ProfilePlot {
         title: title(task),
         kind: ", cantilever".into(),
@@ -96,7 +101,7 @@ fn plot(task: &Task, tests: &[Cantilever]) -> ProfilePlot {
         lines: tests.iter().flat_map(|c| drawn(task, c)).collect(),
         chord_angle_deg: Some(CHORD_ANGLE_DEG),
         mirrored: false,
-        remarks: remarks(tests),
+        remarks: warning.into_iter().chain(remarks(tests)).collect(),
     }
 }
 

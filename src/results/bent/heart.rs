@@ -23,8 +23,13 @@ impl BendingReport for Vec<HeartLoop> {
         self.iter().map(row).collect()
     }
 
-    fn write_charts(&self, task: &Task, folder: &Folder) -> Result<Vec<String>, Failure> {
-        let chart = folder.chart(&task.stem(), || chart::profile(&plot(task, self)))?;
+    fn write_charts(
+        &self,
+        task: &Task,
+        warning: Option<String>,
+        folder: &Folder,
+    ) -> Result<Vec<String>, Failure> {
+        let chart = folder.chart(&task.stem(), || chart::profile(&plot(task, self, warning)))?;
         Ok(chart.into_iter().collect())
     }
 
@@ -49,7 +54,8 @@ fn line(task: &Task, h: &HeartLoop) -> Vec<String> {
     ]
 }
 
-fn plot(task: &Task, tests: &[HeartLoop]) -> ProfilePlot {
+fn plot(task: &Task, tests: &[HeartLoop], warning: Option<String>) -> ProfilePlot {
+    let elastic = "Elastic; the halves may pass through each other where cloth would touch.";
     ProfilePlot {
         title: title(task),
         kind: ", heart loop".into(),
@@ -58,7 +64,7 @@ fn plot(task: &Task, tests: &[HeartLoop]) -> ProfilePlot {
         lines: tests.iter().map(|h| drawn(task, h)).collect(),
         chord_angle_deg: None,
         mirrored: true,
-        remarks: vec!["Elastic; the halves may pass through each other where cloth would touch.".into()],
+        remarks: warning.into_iter().chain([elastic.to_string()]).collect(),
     }
 }
 

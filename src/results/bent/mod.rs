@@ -20,7 +20,8 @@ use report::BendingReport;
 use super::columns::Columns;
 use super::failure::Failure;
 use super::folder::Folder;
-use super::rests_on::OF_STRIP;
+use super::judged;
+use super::rests_on::{self, Ground, OF_STRIP, OF_STRIP_WITH_FRICTION};
 use super::sampled::SamplingEntry;
 use super::task::Task;
 use crate::case::{BendingTest, StripKind};
@@ -50,10 +51,11 @@ pub(super) fn shown_length(test: &BendingTest) -> Option<&'static str> {
 
 /// The quantity that rests on the same inputs as one of a result.
 pub(super) fn shown_most<'q>(result: &BendingResult, quantity: &'q str) -> Cow<'q, str> {
-    let (_, direction) = quantity.split_once(' ').unwrap_or_default();
+    let (name, direction) = quantity.split_once(' ').unwrap_or_default();
     match result {
         BendingResult::Cantilever(_) | BendingResult::HeartLoop(_) => {
-            format!("{} {direction}", OF_STRIP).into()
+            let strip = if name.ends_with("_friction") { OF_STRIP_WITH_FRICTION } else { OF_STRIP };
+            format!("{strip} {direction}").into()
         }
         // It finds a rigidity of its own.
         BendingResult::FabBendLoop(_) => quantity.into(),
@@ -75,6 +77,9 @@ pub struct BendingEntry {
     /// Origin of the data of the fabric: `measured`, `published` or `synthetic`.
     #[serde(default)]
     origin: Option<String>,
+    /// What the simulated test rests on that is not to be relied on.
+    #[serde(default)]
+    rests_on: Vec<Ground>,
 }
 
 /// What is there, `null` too; what is not there has its default.
@@ -93,8 +98,8 @@ enum BendingTestEntry {
 
 fn entry(
     task: &Task,
-    name: &str,
-    direction: Direction,
+    result: &BendingResult,
+    (name, direction): (&str, Direction),
     test: BendingTestEntry,
     has_bands: bool,
 ) -> BendingEntry {
@@ -106,6 +111,7 @@ fn entry(
         test,
         uncertainty: has_bands.then(sampling),
         origin: task.origin_name(),
+        rests_on: judged::of_bent(task, result, direction),
     }
 }
 
@@ -120,15 +126,25 @@ pub(super) fn entries(task: &Task, result: &BendingResult) -> Vec<BendingEntry> 
     match result {
         BendingResult::Cantilever(tests) => tests
             .iter()
-            .map(|c| entry(task, "cantilever", c.direction, Cantilever(CantileverEntry::new(task, c)), true))
+            .map(|c| {
+                entry(
+                    task,
+                    result,
+                    ("cantilever", c.direction),
+                    Cantilever(CantileverEntry::new(task, c)),
+                    true,
+                )
+            })
             .collect(),
         BendingResult::HeartLoop(tests) => tests
             .iter()
-            .map(|h| entry(task, "heart_loop", h.direction, HeartLoop(HeartEntry::new(h)), true))
+            .map(|h| entry(task, result, ("heart_loop", h.direction), HeartLoop(HeartEntry::new(h)), true))
             .collect(),
         BendingResult::FabBendLoop(directions) => directions
             .iter()
-            .map(|d| entry(task, "fab_bend_loop", d.direction, FabBendLoop(FabEntry::new(d)), false))
+            .map(|d| {
+                entry(task, result, ("fab_bend_loop", d.direction), FabBendLoop(FabEntry::new(d)), false)
+            })
             .collect(),
     }
 }
@@ -139,7 +155,9 @@ pub(super) fn write_charts(
     result: &BendingResult,
     folder: &Folder,
 ) -> Result<Vec<String>, Failure> {
-    report(result).write_charts(task, folder)
+    let along = [Direction::Warp, Direction::Weft].map(|direction| judged::of_bent(task, result, direction));
+    let warning = rests_on::warning(&rests_on::each_once(along.concat()));
+    report(result).write_charts(task, warning, folder)
 }
 
 /// One table for each kind of test among the results.

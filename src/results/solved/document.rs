@@ -10,6 +10,7 @@ use super::search::{SearchEntry, StepEntry, step_entries};
 use crate::finding::Finding;
 use crate::model::Model;
 use crate::quantity::Band;
+use crate::results::rests_on::Ground;
 use crate::results::sampled::{MeasuredInputEntry, SamplingEntry};
 use crate::results::task::Task;
 use crate::study::{
@@ -42,6 +43,9 @@ pub struct SolutionEntry {
     /// Origin of the data of the fabric: `measured`, `published` or `synthetic`.
     #[serde(default)]
     origin: Option<String>,
+    /// What the results rest on that is not to be relied on.
+    #[serde(default)]
+    rests_on: Vec<Ground>,
 }
 
 /// Size of a model.
@@ -157,7 +161,12 @@ struct PredictionEntry {
 }
 
 /// The entry of a solved case. Seconds differ from run to run: they are left out of files.
-pub(in crate::results) fn entry(task: &Task, result: &CaseResult, timings: bool) -> SolutionEntry {
+pub(in crate::results) fn entry(
+    task: &Task,
+    result: &CaseResult,
+    rests_on: Vec<Ground>,
+    timings: bool,
+) -> SolutionEntry {
     SolutionEntry {
         case: result.case.clone(),
         fabric: task.fabric_name().map(str::to_string),
@@ -172,6 +181,7 @@ pub(in crate::results) fn entry(task: &Task, result: &CaseResult, timings: bool)
         history: result.history.clone(),
         timings: timings.then(|| TimingsEntry::new(&result.solution)),
         origin: task.origin_name(),
+        rests_on,
     }
 }
 

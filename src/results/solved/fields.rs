@@ -1,5 +1,7 @@
 //! Fields of a solved case: the VTU file, and the chart of its deflection.
 
+use nalgebra::Vector3;
+
 use crate::fields::{Resultants, warp_directions};
 use crate::quantity::{Curve, significant};
 use crate::report::chart::FieldPlot;
@@ -7,6 +9,7 @@ use crate::report::vtu::{MeshField, vtu};
 use crate::results::failure::Failure;
 use crate::results::sampled;
 use crate::results::task::Task;
+use crate::results::{judged, rests_on};
 use crate::study::{CaseResult, StudyError};
 
 /// Name, components and values of a field.
@@ -57,9 +60,28 @@ fn shown(result: &CaseResult) -> Option<String> {
 
 /// Whether a sheet only stretches and shears: no point of it moves out of its plane by more than a millionth of what it moves within.
 pub(in crate::results) fn lies_in_its_plane(result: &CaseResult) -> bool {
-    let nodes = || result.solution.displacement.chunks_exact(6);
-    let within = nodes().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
-    within > 0.0 && nodes().all(|u| u[2].abs() <= 1e-6 * within)
+    let within = largest_in_plane(result);
+    // Of a motion the largest deflection is that of all instants.
+    let is_flat = |w: f64| w.abs() <= 1e-6 * within;
+    within > 0.0
+        && is_flat(result.w_max)
+        && result.solution.displacement.chunks_exact(6).all(|u| is_flat(u[2]))
+}
+
+/// The largest displacement within the plane x-y (m).
+pub(in crate::results) fn largest_in_plane(result: &CaseResult) -> f64 {
+    result.solution.displacement.chunks_exact(6).map(|u| u[0].hypot(u[1])).fold(0.0, f64::max)
+}
+
+/// `along x`, or `at 30° to x`, of a warp in the plane x-y.
+fn warp(direction: &Vector3<f64>) -> Option<String> {
+    let angle = direction.y.atan2(direction.x).to_degrees();
+    match (direction.z == 0.0, angle) {
+        (false, _) => None,
+        (true, 0.0) => Some("along x".into()),
+        (true, 90.0) => Some("along y".into()),
+        (true, angle) => Some(format!("at {}° to x", significant(angle))),
+    }
 }
 
 /// The mesh and the deflection of a result, as the files want them.
@@ -133,10 +155,12 @@ impl Mesh {
             ("Deflection w", &self.w, result.profile.clone())
         };
         let (quantity, unit) = if result.is_modal() { ("Shape", "") } else { (quantity, "m") };
+        let bands = sampled::values(task, "w_max", "mm", 1e-3).into_iter();
         let shown = shown(result).map_or_else(String::new, |what| format!("; {what}"));
+        let warp = warp(&result.model.warp).map_or_else(String::new, |along| format!("; warp {along}"));
         FieldPlot {
             title: task.case.title.clone(),
-            subtitle: format!("{fabric}; {} elements, {cells} each{shown}", self.quads.len()),
+            subtitle: format!("{fabric}; {} elements, {cells} each{warp}{shown}", self.quads.len()),
             origin: task.simulated_from(),
             quantity: quantity.into(),
             unit: unit.into(),
@@ -145,8 +169,8 @@ impl Mesh {
             values,
             profile_along: "x of the flat sheet, middle line".into(),
             profile,
-            notes: (sampled::values(task, "w_max", "mm", 1e-3).into_iter())
-                .map(|(band, value)| format!("{band}: largest |w| {value}"))
+            notes: (rests_on::warning(&judged::of_solved(task, result)).into_iter())
+                .chain(bands.map(|(band, value)| format!("{band}: largest |w| {value}")))
                 .chain(result.findings.iter().map(|f| f.message()))
                 .collect(),
             ..FieldPlot::default()

@@ -12,7 +12,7 @@ mod text;
 pub(super) use document::entry;
 pub use document::{ModelEntry, QuantityEntry, SolutionEntry};
 pub use effort::{SolverEntry, TimingsEntry};
-pub(super) use fields::{lies_in_its_plane, mesh_fields, resultants};
+pub(super) use fields::{largest_in_plane, lies_in_its_plane, mesh_fields, resultants};
 pub(crate) use text::checks;
 pub(super) use text::{status, text};
 
@@ -46,14 +46,25 @@ pub(super) fn unconverged(task: &Task, result: &CaseResult) -> Option<Failure> {
     Some(Failure::from(finding).of(&task.name()))
 }
 
-/// The largest deflection, that of each probe and what steps have looked for; or the natural frequencies or load factors.
+/// The largest displacement within the plane of a sheet that stays in it.
+pub(super) const IN_PLANE: &str = "in_plane_max";
+
+/// The largest deflection, that of each probe and what steps have looked for; or the natural frequencies or load factors. Of a sheet
+/// that stays in its plane its displacements there.
 pub(super) fn rows(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
     if result.is_modal() {
         return eigenvalues(task, result, "", [&result.frequencies, &result.load_factors]);
     }
-    let mut rows = vec![row(task, result, "w_max".into(), result.w_max, "m")];
+    let (mut rows, components) = if lies_in_its_plane(result) {
+        (vec![row(task, result, IN_PLANE.into(), largest_in_plane(result), "m")], &["u", "v"][..])
+    } else {
+        (vec![row(task, result, "w_max".into(), result.w_max, "m")], &["w"][..])
+    };
     for probe in &result.probes {
-        rows.push(row(task, result, format!("{}.w", probe.name), probe.value.u[2], "m"));
+        let displacements = ["u", "v", "w"].into_iter().zip(probe.value.u);
+        for (component, value) in displacements.filter(|(component, _)| components.contains(component)) {
+            rows.push(row(task, result, format!("{}.{component}", probe.name), value, "m"));
+        }
     }
     for step in result.path.iter().flat_map(|path| &path.load_steps) {
         let values = [step.frequencies.as_slice(), &step.load_factors];

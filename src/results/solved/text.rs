@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{adapted, convergence, effort, search};
+use super::{adapted, convergence, effort, largest_in_plane, lies_in_its_plane, search};
 use crate::model::Model;
 use crate::quantity::significant;
 use crate::results::columns::Columns;
@@ -15,6 +15,8 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
     let headings =
         ["case", "fabric", "w_max (mm)", "± 95 % (mm)", "w/t_b", "elements", "energy error (%)", "status"];
     let mut table = Columns::new(headings);
+    let mut in_plane =
+        Columns::new(["case", "fabric", "in plane (mm)", "elements", "energy error (%)", "status"]);
     let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)", "± 95 % (mm)"]);
     let mut modes = Columns::new(["mode", "case", "fabric", "frequency (Hz)", "± 95 % (Hz)", "elements"]);
     let mut factors = Columns::new(["buckle", "case", "fabric", "load factor", "elements"]);
@@ -37,16 +39,15 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
         }
         let [w, ratio] = [significant(1e3 * r.w_max), significant(r.w_over_thickness)];
         let elements = elements(&r.model);
-        table.row([
-            r.case.clone(),
-            fabric.clone(),
-            w,
-            half_width(r, "w_max", 1e3),
-            ratio,
-            elements,
-            error(r),
-            if beyond > 1 && r.status == Status::BeyondLinear { "*" } else { status(r.status) }.into(),
-        ]);
+        let status =
+            if beyond > 1 && r.status == Status::BeyondLinear { "*" } else { status(r.status) }.to_string();
+        if lies_in_its_plane(r) {
+            let within = significant(1e3 * largest_in_plane(r));
+            in_plane.row([r.case.clone(), fabric.clone(), within, elements, error(r), status]);
+        } else {
+            let half = half_width(r, "w_max", 1e3);
+            table.row([r.case.clone(), fabric.clone(), w, half, ratio, elements, error(r), status]);
+        }
         for p in &r.probes {
             let u = p.value.u.map(|u| significant(1e3 * u));
             let half = half_width(r, &format!("{}.w", p.name), 1e3);
@@ -64,6 +65,7 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
     let steps = if verbose { search::steps(solved) } else { None };
     let parts = [
         table.filled(),
+        in_plane.filled(),
         modes.filled(),
         factors.filled(),
         probes.filled(),
@@ -121,7 +123,7 @@ fn without_band(solved: &[(&Task, &CaseResult)]) -> Option<String> {
     let names: BTreeSet<&str> =
         uncertain.iter().flat_map(|p| &p.without_spread).map(String::as_str).collect();
     let names = names.into_iter().collect::<Vec<_>>().join(", ");
-    (!names.is_empty()).then(|| format!("no band (-) where a single value is all there is of: {names}\n"))
+    (!names.is_empty()).then(|| format!("no band (-) where no spread is known of: {names}\n"))
 }
 
 /// Half of the 95 % band of the mean fabric of a quantity, times `unit`; `-` where it has none.
