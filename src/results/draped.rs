@@ -9,7 +9,6 @@ use super::deflected::Deflected;
 use super::draped_stage;
 use super::failure::Failure;
 use super::folder::Folder;
-use super::judged;
 use super::rests_on::{self, Ground};
 use super::sampled::{self, SamplingEntry};
 use super::solved::{ModelEntry, mesh_fields, resultants};
@@ -58,7 +57,7 @@ pub(super) fn table<'a, 'f: 'a, 'c: 'a>(
             d.case.clone(),
             task.shown_fabric(),
             law(task).into(),
-            percent(s.coefficient),
+            percent(s.coefficient) + &rests_on::mark(&grounds(task)),
             format!("{} to {}", percent(low), percent(high)),
             measured(task).map_or("-".into(), |(m, _)| percent(m)),
             s.folds.count.to_string(),
@@ -234,8 +233,15 @@ pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
         results: DrapeResults { drape },
         findings: d.findings.clone(),
         origin: task.origin_name(),
-        rests_on: judged::of_drape(task),
+        rests_on: grounds(task),
     }
+}
+
+/// What the shape of a drape rests on that is not to be relied on.
+pub(super) fn grounds(task: &Task) -> Vec<Ground> {
+    let inputs = &rests_on::known(task);
+    let friction: &[&str] = if task.case.law() == Mode::Elastic { &[] } else { &["2HB", "2HG"] };
+    rests_on::of_symbols(inputs, &[&["E", "G", "B", "W"], friction].concat())
 }
 
 /// Rows of `predictions.csv`: the coefficient beside what was measured, the mean, least and greatest of the states of nearly
@@ -304,7 +310,7 @@ pub(super) fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
         simulated_half_width: None,
         simulated_band: Some(d.band().map(|b| 100.0 * b)),
         is_closed_loop: false,
-        status: rests_on::status(&judged::of_drape(task)),
+        status: rests_on::status(&grounds(task)),
     };
     Some(DrapePoint { law: task.case.law(), point })
 }
@@ -444,7 +450,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         outline: &d.outline,
         measured: measured(task).map(|(coefficient, _)| coefficient),
         values,
-        remarks: (rests_on::warning(&judged::of_drape(task)).into_iter())
+        remarks: (rests_on::warning(&grounds(task)).into_iter())
             .chain(d.findings.iter().map(|f| f.message()))
             .collect(),
     }

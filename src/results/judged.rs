@@ -1,28 +1,21 @@
 //! What speaks against a simulated value, in a word and in a sentence: for tables of predictions and for the page alike.
 
-use super::bent;
 use super::outcome::Outcome;
 use super::rests_on::{self, DOUBTFUL, Ground};
-use super::solved;
 use super::task::Task;
+use super::{bent, draped, solved};
 use crate::characterise::ValueStatus;
 use crate::constitutive::MeasuredInput;
 use crate::finding::{Fact, Finding, StudyFact};
 use crate::instrument::{Direction, Parameter};
-use crate::law::Mode;
-use crate::model::Load;
 use crate::report::table::PredictionRow;
-use crate::study::bending::BendingResult;
-use crate::study::{CaseResult, Status};
+use crate::study::Status;
 
 /// Of a value that rests on an assumption.
 const ASSUMED: &str = "assumed";
 
 /// Of a value of a drape on coarse cells.
 const QUICK: &str = "quick";
-
-/// A result that is 0 but for rounding: below this part of the largest of its unit.
-const ROUNDING: f64 = 1e-9;
 
 /// Fills status and remark of the rows of a task.
 pub(super) fn fill(rows: &mut [PredictionRow], task: &Task, outcome: &Outcome) {
@@ -48,64 +41,14 @@ fn is_of_both(task: &Task, row: &PredictionRow) -> bool {
     Parameter::from_symbol(symbol).is_some_and(|parameter| task.is_of_both(parameter, direction))
 }
 
-/// What a solved case rests on that is not to be relied on, each once.
-pub(super) fn of_solved(task: &Task, result: &CaseResult) -> Vec<Ground> {
-    let inputs = rests_on::known(task);
-    let rows = solved::rows(task, result);
-    rests_on::each_once(rows.iter().flat_map(|row| of_sheet(result, &inputs, &row.quantity)))
-}
-
-/// The same of a bending test in a direction.
-pub(super) fn of_bent(task: &Task, result: &BendingResult, direction: Direction) -> Vec<Ground> {
-    let inputs = rests_on::known(task);
-    let rows = bent::rows(task, result).into_iter().filter(|row| row.quantity.ends_with(direction.name()));
-    rests_on::each_once(
-        rows.flat_map(|row| rests_on::grounds(&inputs, &bent::shown_most(result, &row.quantity))),
-    )
-}
-
 /// What a quantity of an outcome rests on that is not to be relied on.
 fn grounds_of(task: &Task, outcome: &Outcome, inputs: &[MeasuredInput], quantity: &str) -> Vec<Ground> {
     match outcome {
-        Outcome::Solved(result) => of_sheet(result, inputs, quantity),
+        Outcome::Solved(result) => solved::grounds(result, inputs, quantity),
         Outcome::Bent(result, _) => rests_on::grounds(inputs, &bent::shown_most(result, quantity)),
-        Outcome::Draped(_) => of_drape(task),
+        Outcome::Draped(_) => draped::grounds(task),
         Outcome::Tested(_) => rests_on::grounds(inputs, quantity),
     }
-}
-
-/// What the shape of a drape rests on that is not to be relied on.
-pub(super) fn of_drape(task: &Task) -> Vec<Ground> {
-    let inputs = &rests_on::known(task);
-    let friction: &[&str] = if task.case.law() == Mode::Elastic { &[] } else { &["2HB", "2HG"] };
-    rests_on::of_symbols(inputs, &[&["E", "G", "B", "W"], friction].concat())
-}
-
-/// A linear result rests on what it changes with. Of others every result of a sheet, at probes and of modes too, is one of its
-/// bending, or of its stretching where it stays in its plane, or of both in large rotations.
-fn of_sheet(result: &CaseResult, inputs: &[MeasuredInput], quantity: &str) -> Vec<Ground> {
-    if let Some(uncertainty) = &result.uncertainty
-        && let Some(prediction) = uncertainty.of(quantity)
-    {
-        let alike = uncertainty.predictions.iter().filter(|other| other.unit == prediction.unit);
-        let largest = alike.map(|other| other.value.abs()).fold(0.0, f64::max);
-        if prediction.value.abs() > ROUNDING * largest {
-            return rests_on::of_prediction(&uncertainty.inputs, prediction);
-        }
-    }
-    let mut symbols = match (solved::lies_in_its_plane(result), result.state.is_some()) {
-        (true, _) => vec!["E", "G"],
-        (false, true) => vec!["E", "G", "B"],
-        (false, false) => vec!["B"],
-    };
-    let is_heavy = result.model.loads.iter().any(|load| matches!(load, Load::Gravity(_)));
-    if is_heavy || !result.frequencies.is_empty() || result.history.is_some() {
-        symbols.push("W");
-    }
-    if result.law.is_some() {
-        symbols.extend(["2HB", "2HG"]);
-    }
-    rests_on::of_symbols(inputs, &symbols)
 }
 
 /// The word that weighs most; nothing where nothing speaks against the value.

@@ -5,12 +5,14 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use super::bent::{self, BendingEntry};
+use super::columns::Columns;
 use super::complete::Complete;
 use super::deflected::{Deflected, PageSheet};
 use super::draped::{self, DrapeEntry, DrapePoint};
 use super::failure::Failure;
 use super::folder::Folder;
 use super::judged;
+use super::rests_on::{self, Ground};
 use super::sampled;
 use super::solved::{self, SolutionEntry};
 use super::task::Task;
@@ -118,7 +120,7 @@ impl Outcome {
     pub(super) fn entries(&self, task: &Task, timings: bool) -> Entries {
         match self {
             Self::Solved(result) => {
-                let grounds = judged::of_solved(task, result);
+                let grounds = solved::all_grounds(task, result);
                 let entry = solved::entry(task, result, grounds, timings);
                 Entries::Solutions(vec![Solution::Solved(Box::new(entry))])
             }
@@ -199,6 +201,16 @@ impl Outcome {
             kind,
         };
         Ok(drawn.into_iter().map(figure).collect())
+    }
+
+    /// What it rests on that is not to be relied on, each once.
+    fn grounds(&self, task: &Task) -> Vec<Ground> {
+        match self {
+            Self::Solved(result) => solved::all_grounds(task, result),
+            Self::Draped(_) => draped::grounds(task),
+            Self::Tested(tested) => rests_on::each_once(tested.iter().flat_map(|t| t.grounds.clone())),
+            Self::Bent(result, _) => bent::all_grounds(task, result),
+        }
     }
 
     /// Of a case with a `[sheet]`.
@@ -328,6 +340,18 @@ impl Outcome {
     }
 }
 
+/// What outcomes rest on that is not to be relied on, if there is anything.
+fn rested(outcomes: &[(&Task, &Outcome)]) -> Option<String> {
+    let mut table = Columns::new(["case", "fabric", "rests on"]).with_note(rests_on::LEGEND);
+    for (task, outcome) in outcomes {
+        let grounds = outcome.grounds(task);
+        if rests_on::warning(&grounds).is_some() {
+            table.row([task.case.name.clone(), task.shown_fabric(), rests_on::joined(&grounds)]);
+        }
+    }
+    table.filled().map(|table| table.text())
+}
+
 /// Outcomes as text, kind by kind; with `verbose` every step of a search, and what each solution took.
 pub(super) fn text(outcomes: &[(&Task, &Outcome)], verbose: bool) -> String {
     let (mut solved, mut draped, mut tested, mut bent) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -344,6 +368,7 @@ pub(super) fn text(outcomes: &[(&Task, &Outcome)], verbose: bool) -> String {
     parts.extend(draped::table(draped.iter().copied()).filled().map(|table| table.text()));
     parts.extend((!tested.is_empty()).then(|| tested::text(&tested)));
     parts.extend(bent::texts(&bent));
+    parts.extend(rested(outcomes));
     parts.extend(sampled::table(outcomes.iter().map(|(task, _)| *task)));
     parts.join("\n")
 }

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
+use super::sheet_text;
 use super::task::Task;
 use crate::characterise::ValueStatus;
 use crate::constitutive::{InputSource, MeasuredInput, law_inputs};
@@ -113,6 +114,14 @@ pub(super) fn warning(grounds: &[Ground]) -> Option<String> {
     let weak: Vec<&Ground> = grounds.iter().filter(|g| g.status != ValueStatus::Measured).collect();
     (!weak.is_empty()).then(|| format!("Rests on {}.", joined(weak)))
 }
+
+/// What stands behind a value of a table that rests on them; nothing where all was measured.
+pub(super) fn mark(grounds: &[Ground]) -> String {
+    sheet_text::mark(status(grounds))
+}
+
+/// What `mark` means.
+pub(super) const LEGEND: &str = "? rests on what is doubtful, * on an assumption, ~ on what was inferred";
 
 /// `an assumed E and a doubtful B warp`.
 pub(super) fn joined<'g>(grounds: impl IntoIterator<Item = &'g Ground>) -> String {

@@ -427,7 +427,7 @@ fn text_row(task: &Task, t: &Tested) -> Vec<String> {
     match &t.stiffness {
         Some(Stiffness { symbol, unit, measured, is_of_both }) => cells.extend([
             symbol.to_string(),
-            significant(t.simulated.apparent),
+            significant(t.simulated.apparent) + &rests_on::mark(&t.grounds),
             or_dash(t.band().map(|b| b.half_width)),
             or_dash(measured.as_ref().map(|e| e.mean)) + if *is_of_both { BOTH } else { "" },
             or_dash(measured.as_ref().and_then(Estimate::ci95)),

@@ -20,7 +20,6 @@ use report::BendingReport;
 use super::columns::Columns;
 use super::failure::Failure;
 use super::folder::Folder;
-use super::judged;
 use super::rests_on::{self, Ground, OF_STRIP, OF_STRIP_WITH_FRICTION};
 use super::sampled::SamplingEntry;
 use super::task::Task;
@@ -60,6 +59,19 @@ pub(super) fn shown_most<'q>(result: &BendingResult, quantity: &'q str) -> Cow<'
         // It finds a rigidity of its own.
         BendingResult::FabBendLoop(_) => quantity.into(),
     }
+}
+
+/// What a bending test rests on that is not to be relied on.
+pub(super) fn all_grounds(task: &Task, result: &BendingResult) -> Vec<Ground> {
+    let along = [Direction::Warp, Direction::Weft].map(|direction| grounds_along(task, result, direction));
+    rests_on::each_once(along.concat())
+}
+
+/// What a bending test in a direction rests on that is not to be relied on.
+fn grounds_along(task: &Task, result: &BendingResult, direction: Direction) -> Vec<Ground> {
+    let inputs = rests_on::known(task);
+    let rows = rows(task, result).into_iter().filter(|row| row.quantity.ends_with(direction.name()));
+    rests_on::each_once(rows.flat_map(|row| rests_on::grounds(&inputs, &shown_most(result, &row.quantity))))
 }
 
 /// An entry of `kesf.comparison/1`: a bending test of a strip (SI).
@@ -111,7 +123,7 @@ fn entry(
         test,
         uncertainty: has_bands.then(sampling),
         origin: task.origin_name(),
-        rests_on: judged::of_bent(task, result, direction),
+        rests_on: grounds_along(task, result, direction),
     }
 }
 
@@ -155,9 +167,17 @@ pub(super) fn write_charts(
     result: &BendingResult,
     folder: &Folder,
 ) -> Result<Vec<String>, Failure> {
-    let along = [Direction::Warp, Direction::Weft].map(|direction| judged::of_bent(task, result, direction));
-    let warning = rests_on::warning(&rests_on::each_once(along.concat()));
+    let warning = rests_on::warning(&all_grounds(task, result));
     report(result).write_charts(task, warning, folder)
+}
+
+/// A line of a table, with what its direction, which stands first, rests on behind the name of the fabric.
+fn marked(mut line: Vec<String>, task: &Task, result: &BendingResult) -> Vec<String> {
+    let direction = Direction::ALL.into_iter().find(|d| line.first().is_some_and(|first| first == d.name()));
+    if let (Some(direction), Some(first)) = (direction, line.first_mut()) {
+        *first += &rests_on::mark(&grounds_along(task, result, direction));
+    }
+    line
 }
 
 /// One table for each kind of test among the results.
@@ -167,7 +187,8 @@ pub(super) fn texts(results: &[(&Task, &BendingResult)]) -> Vec<String> {
         let report = report(result);
         let headings = report.headings();
         let table = tables.entry(headings).or_insert_with(|| Columns::new(headings.iter().copied()));
-        report.lines(task).into_iter().for_each(|line| table.row(line));
+        let marked = report.lines(task).into_iter().map(|line| marked(line, task, result));
+        marked.for_each(|line| table.row(line));
         notes.extend(report.note().map(|note| (headings, note)));
     }
     let with_note = |(headings, table): (_, Columns)| {

@@ -9,7 +9,6 @@ use crate::report::vtu::{MeshField, vtu};
 use crate::results::failure::Failure;
 use crate::results::sampled;
 use crate::results::task::Task;
-use crate::results::{judged, rests_on};
 use crate::study::{CaseResult, StudyError};
 
 /// Name, components and values of a field.
@@ -143,7 +142,7 @@ impl Mesh {
         Ok(vtu(&self.nodes, &self.quads, &mesh_fields(&fields), &[])?)
     }
 
-    pub fn plot(&self, task: &Task, result: &CaseResult) -> FieldPlot<'_> {
+    pub fn plot(&self, task: &Task, result: &CaseResult, warning: Option<String>) -> FieldPlot<'_> {
         let fabric = task.fabric_name().unwrap_or("section of the case");
         let cells = match result.model.formulation.bending_cells() {
             1 => "one bending cell".into(),
@@ -169,7 +168,7 @@ impl Mesh {
             values,
             profile_along: "x of the flat sheet, middle line".into(),
             profile,
-            notes: (rests_on::warning(&judged::of_solved(task, result)).into_iter())
+            notes: (warning.into_iter())
                 .chain(bands.map(|(band, value)| format!("{band}: largest |w| {value}")))
                 .chain(result.findings.iter().map(|f| f.message()))
                 .collect(),

@@ -3,7 +3,6 @@
 use crate::quantity::Curve;
 use crate::report::chart::{HistoryPanel, HistoryPlot};
 use crate::results::task::Task;
-use crate::results::{judged, rests_on};
 use crate::study::{CaseResult, History, LoadPath, LoadStepEnd};
 
 /// Points that a line keeps.
@@ -86,7 +85,6 @@ fn plot(
 ) -> HistoryPlot {
     let panels = [panel("Displacement", "m", lines), panel("Energy", "J", energies)];
     let left_out = result.probes.len().saturating_sub(MOST_PROBES);
-    let warning = rests_on::warning(&judged::of_solved(task, result));
     let left_out = (left_out > 0).then(|| format!("{left_out} more probes are in the table beside."));
     HistoryPlot {
         title: task.case.title.clone(),
@@ -98,7 +96,7 @@ fn plot(
         ),
         origin: task.simulated_from(),
         panels: panels.into_iter().filter(|panel| !panel.lines.is_empty()).collect(),
-        remarks: left_out.into_iter().chain(warning).collect(),
+        remarks: left_out.into_iter().collect(),
         ..HistoryPlot::default()
     }
 }

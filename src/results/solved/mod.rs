@@ -5,6 +5,7 @@ mod convergence;
 mod document;
 mod effort;
 mod fields;
+mod grounds;
 mod history;
 mod search;
 mod text;
@@ -13,12 +14,14 @@ pub(super) use document::entry;
 pub use document::{ModelEntry, QuantityEntry, SolutionEntry};
 pub use effort::{SolverEntry, TimingsEntry};
 pub(super) use fields::{largest_in_plane, lies_in_its_plane, mesh_fields, resultants};
+pub(super) use grounds::grounds;
 pub(crate) use text::checks;
 pub(super) use text::{status, text};
 
 use super::deflected::Deflected;
 use super::failure::Failure;
 use super::folder::Folder;
+use super::rests_on::{self, Ground};
 use super::task::Task;
 use crate::finding::{Fact, Finding, StudyFact};
 use crate::report::chart;
@@ -95,6 +98,13 @@ fn row(task: &Task, result: &CaseResult, quantity: String, value: f64, unit: &st
     }
 }
 
+/// What a solved case rests on that is not to be relied on, each once.
+pub(super) fn all_grounds(task: &Task, result: &CaseResult) -> Vec<Ground> {
+    let inputs = rests_on::known(task);
+    let rows = rows(task, result);
+    rests_on::each_once(rows.iter().flat_map(|row| grounds(result, &inputs, &row.quantity)))
+}
+
 /// The sheet before and after; `None` of vibrations, which have no size, and of a search that left all numbers.
 pub(super) fn deflected(task: &Task, result: &CaseResult) -> Option<Deflected> {
     let all = &result.solution.displacement;
@@ -113,6 +123,7 @@ pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result
         folder.csv(&format!("{stem}.csv"), &history)?;
     }
     let mesh = fields::Mesh::new(result);
+    let warning = rests_on::warning(&all_grounds(task, result));
     if folder.fields() {
         folder.write(&format!("{stem}.vtu"), &mesh.vtu(result)?)?;
         for (k, step) in result.path.iter().flat_map(|path| path.load_steps.iter().enumerate()) {
@@ -126,9 +137,11 @@ pub(super) fn write(task: &Task, result: &CaseResult, folder: &Folder) -> Result
             }
         }
     }
-    let mut drawn = Vec::from_iter(folder.chart(&stem, || chart::field(&mesh.plot(task, result)))?);
+    let mut drawn =
+        Vec::from_iter(folder.chart(&stem, || chart::field(&mesh.plot(task, result, warning.clone())))?);
     if folder.charts() {
-        for (stem, plot) in history::plots(task, result) {
+        for (stem, mut plot) in history::plots(task, result) {
+            plot.remarks.extend(warning.clone());
             drawn.extend(folder.chart(&stem, || chart::history(&plot))?);
         }
     }

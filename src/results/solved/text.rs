@@ -2,10 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use super::{adapted, convergence, effort, largest_in_plane, lies_in_its_plane, search};
+use super::fields::{largest_in_plane, lies_in_its_plane};
+use super::{adapted, all_grounds, convergence, effort, search};
 use crate::model::Model;
 use crate::quantity::significant;
 use crate::results::columns::Columns;
+use crate::results::rests_on;
 use crate::results::task::Task;
 use crate::study::{CaseResult, Status};
 
@@ -23,26 +25,27 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
     // That a linear solve cannot hold for cloth is said once, however many fabrics there are.
     let beyond = solved.iter().filter(|(_, r)| r.status == Status::BeyondLinear).count();
     for (task, r) in solved {
-        let fabric = task.shown_fabric();
+        let (fabric, mark) = (task.shown_fabric(), rests_on::mark(&all_grounds(task, r)));
         for (k, f) in r.frequencies.iter().enumerate() {
             let elements = elements(&r.model);
             let half = half_width(r, &format!("frequency_{}", k + 1), 1.0);
-            modes.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), significant(*f), half, elements]);
+            let frequency = significant(*f) + &mark;
+            modes.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), frequency, half, elements]);
         }
         for (k, f) in r.load_factors.iter().enumerate() {
             let elements = elements(&r.model);
-            factors.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), significant(*f), elements]);
+            let factor = significant(*f) + &mark;
+            factors.row([(k + 1).to_string(), r.case.clone(), fabric.clone(), factor, elements]);
         }
         if r.is_modal() {
             // The shape of a mode has no size.
             continue;
         }
-        let [w, ratio] = [significant(1e3 * r.w_max), significant(r.w_over_thickness)];
+        let [w, ratio] = [significant(1e3 * r.w_max) + &mark, significant(r.w_over_thickness)];
         let elements = elements(&r.model);
-        let status =
-            if beyond > 1 && r.status == Status::BeyondLinear { "*" } else { status(r.status) }.to_string();
+        let status = status(r.status).to_string();
         if lies_in_its_plane(r) {
-            let within = significant(1e3 * largest_in_plane(r));
+            let within = significant(1e3 * largest_in_plane(r)) + &mark;
             in_plane.row([r.case.clone(), fabric.clone(), within, elements, error(r), status]);
         } else {
             let half = half_width(r, "w_max", 1e3);
@@ -57,7 +60,7 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
     }
     if beyond > 1 {
         let note = format!(
-            "* beyond linear: {beyond} of {} results say how stiff a sheet is, not what shape it takes",
+            "beyond linear: {beyond} of {} results say how stiff a sheet is, not what shape it takes",
             solved.len()
         );
         table = table.with_note(&note);
