@@ -104,6 +104,15 @@ fn tell_another(sheet: &mut FabricSheet, key: Key, stated: f64, tolerance: f64) 
     }
 }
 
+/// `Fm/e_m`, with the relative spread of the extension: to first order that of its reciprocal.
+fn secant(maximum: f64, extension: &Estimate) -> Estimate {
+    let mean = maximum / extension.mean;
+    match extension.cv() {
+        Some(cv) => Estimate { mean, sd: Some(cv * mean), n: extension.n, values: Vec::new() },
+        None => Estimate::single(mean),
+    }
+}
+
 /// Secant and energy modulus where only a table is known: Fm / e_m and LT Fm / e_m (or 2 WT / e_m²).
 pub(super) fn moduli(sheet: &mut FabricSheet, settings: &Settings) {
     let maximum = settings.table_maximum.si();
@@ -111,13 +120,16 @@ pub(super) fn moduli(sheet: &mut FabricSheet, settings: &Settings) {
     for direction in Direction::ALL {
         let mean = |p| sheet.get(p, Some(direction)).map(|e| e.mean);
         let known = sheet.moduli.keys().any(|(_, d)| *d == direction);
-        let (Some(strain), false) = (mean(Parameter::Emt).filter(|e| *e > 0.0), known) else { continue };
-        let secant = maximum / strain;
-        let energy = (mean(Parameter::Lt).map(|lt| lt * secant))
+        let extension = sheet.get(Parameter::Emt, Some(direction)).filter(|e| e.mean > 0.0).cloned();
+        let (Some(extension), false) = (extension, known) else { continue };
+        let (strain, secant) = (extension.mean, secant(maximum, &extension));
+        let energy = (mean(Parameter::Lt).map(|lt| lt * secant.mean))
             .or_else(|| mean(Parameter::Wt).map(|wt| 2.0 * wt / (strain * strain)));
+        // How LT and EMT vary together no table says.
+        let energy = energy.map(Estimate::single);
         for (modulus, value) in [(Modulus::Secant, Some(secant)), (Modulus::Energy, energy)] {
             if let (Some(value), true) = (value, settings.moduli.contains(&modulus)) {
-                sheet.moduli.insert((modulus.name(), direction), Estimate::single(value));
+                sheet.moduli.insert((modulus.name(), direction), value);
                 used = true;
             }
         }

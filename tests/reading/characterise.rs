@@ -254,3 +254,19 @@ fn a_travel_marks_the_values_of_its_record_only() {
         }
     }
 }
+
+/// The secant of a table has the spread of its extension, to first order that of the reciprocal.
+#[test]
+fn a_secant_of_a_table_has_the_spread_of_its_extension() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = "parameter,direction,mean,sd,n,unit\nEMT,warp,4.0,0.2,5,%\nEMT,weft,8.0,,,%\n";
+    std::fs::write(folder.path().join("results.csv"), table).unwrap();
+    let batch = read_fabrics(&[folder.path().to_path_buf()], &ReadSettings::default(), &|_: &Path| ());
+    let sheet = characterise(&batch.fabrics[0], &Settings::default());
+    let secant = |direction| &sheet.moduli[&("secant".to_string(), direction)];
+    let (warp, weft) = (secant(Direction::Warp), secant(Direction::Weft));
+    // 500 gf/cm over 4 %.
+    assert_relative_eq!(warp.mean, 490.3325 / 0.04, max_relative = 1e-9);
+    assert_relative_eq!(warp.cv().unwrap(), 0.05, max_relative = 1e-9);
+    assert_eq!((warp.n, weft.n, weft.sd), (5, 1, None));
+}

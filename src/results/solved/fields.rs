@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::fields::{Resultants, warp_directions};
-use crate::quantity::{Curve, significant};
+use crate::quantity::{Curve, significant, without_rounding};
 use crate::report::chart::FieldPlot;
 use crate::report::vtu::{MeshField, vtu};
 use crate::results::failure::Failure;
@@ -79,7 +79,7 @@ fn warp(direction: &Vector3<f64>) -> Option<String> {
         (false, _) => None,
         (true, 0.0) => Some("along x".into()),
         (true, 90.0) => Some("along y".into()),
-        (true, angle) => Some(format!("at {}° to x", significant(angle))),
+        (true, angle) => Some(format!("at {}° to x", without_rounding((angle * 1e3).round() / 1e3))),
     }
 }
 
