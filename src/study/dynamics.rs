@@ -25,6 +25,9 @@ use crate::solve::{self, Solution};
 /// Above this part of the largest work a balance of energies that does not close is worth a word.
 const IMBALANCE_LIMIT: f64 = 0.05;
 
+/// Below this part of the strain energy that a sheet holds, the work of a motion is none.
+const AT_REST: f64 = 1e-6;
+
 /// Motions of a free sheet as a whole.
 const RIGID_MOTIONS: usize = 6;
 
@@ -188,7 +191,9 @@ impl<'a> Record<'a> {
             .energy
             .iter()
             .map(|e| if began == 0.0 { e.work.abs() } else { (e.work - began).abs().max(e.kinetic) });
-        let work = sizes.fold(f64::MIN_POSITIVE, f64::max);
+        // Of a sheet that stays where it began there is nothing but rounding.
+        let held = history.energy.iter().map(|e| e.strain).fold(f64::MIN_POSITIVE, f64::max);
+        let work = sizes.fold(AT_REST * held, f64::max);
         history.imbalance = history.energy.iter().map(|e| e.imbalance().abs()).fold(0.0, f64::max) / work;
         let given = history.energy.iter().map(|e| -e.dissipated / work).fold(0.0, f64::max);
         let gained = history.energy.iter().map(|e| e.imbalance() / work).fold(0.0, f64::max);

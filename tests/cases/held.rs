@@ -183,3 +183,14 @@ fn arrays_have_their_length() {
         assert!(error.contains("expected an array of length 3"), "{error}");
     }
 }
+
+/// A sheet that begins in its equilibrium stays there: rounding over rounding was an imbalance of energies (S110).
+#[test]
+fn a_sheet_that_stays_where_it_begins_has_its_energies_in_balance() {
+    let motion = "[[supports]]\nset = \"left\"\nkind = \"clamped\"\n[[loads]]\nkind = \"pressure\"\nvalue = \"1e-5 Pa\"\n\
+        [analysis]\nkind = \"newmark\"\nstart = \"deflected\"\nduration = \"0.1 s\"\nstep = \"2 ms\"\n";
+    let result = solved([8, 4], motion).unwrap();
+    let imbalance = result.history.as_ref().unwrap().imbalance;
+    assert!(imbalance < 1e-3, "{imbalance}");
+    assert!(!codes(&result).contains(&"S110"), "{:?}", codes(&result));
+}
