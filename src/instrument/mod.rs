@@ -38,6 +38,7 @@ mod fast;
 mod file_name;
 mod folder;
 mod header;
+mod header_line;
 mod header_value;
 mod inference;
 mod keyed_rows;

@@ -340,16 +340,43 @@ fn table(
         content.findings.push(Finding::new(fact.clone()).at(Place::file(context.path)));
     }
     let rows = restored.as_ref().map_or(rows, |(rows, _)| rows.as_slice());
-    let stacked = side_by_side::stacked(rows, context);
-    let rows = stacked.as_deref().unwrap_or(rows);
-    let apart = slashed::apart(rows, context);
-    let rows = apart.as_deref().unwrap_or(rows);
-    let with_deviations = brackets_below::to_values(rows, context);
-    let rows = with_deviations.as_deref().unwrap_or(rows);
-    let split = lines::split(rows, context.decimal, context.vocabulary);
-    let rows = split.as_deref().unwrap_or(rows);
-    let bare = cell_units::to_headings(rows, context)?;
-    let rows = bare.as_deref().unwrap_or(rows);
+    rearranged(rows, &REARRANGEMENTS, context, complete, content)
+}
+
+/// Makes plain rows of those that are written in another way; nothing of rows that are not.
+type Rearrange = for<'r> fn(&'r [Row<'_>], &Context<'_>) -> Result<Option<Vec<Row<'r>>>, ReadError>;
+
+/// In the order in which they are undone.
+const REARRANGEMENTS: [Rearrange; 5] = [
+    |rows, context| Ok(side_by_side::stacked(rows, context)),
+    |rows, context| Ok(slashed::apart(rows, context)),
+    |rows, context| Ok(brackets_below::to_values(rows, context)),
+    |rows, context| Ok(lines::split(rows, context.decimal, context.vocabulary)),
+    cell_units::to_headings,
+];
+
+/// Reads a table once each of the `steps` has been taken.
+fn rearranged(
+    rows: &[Row<'_>],
+    steps: &[Rearrange],
+    context: &Context<'_>,
+    complete: bool,
+    content: &mut FileContent,
+) -> Result<Vec<ReadError>, ReadError> {
+    let Some((step, steps)) = steps.split_first() else {
+        return plain_table(rows, context, complete, content);
+    };
+    let plainer = step(rows, context)?;
+    rearranged(plainer.as_deref().unwrap_or(rows), steps, context, complete, content)
+}
+
+/// Reads a table whose rows are as they are to be.
+fn plain_table(
+    rows: &[Row<'_>],
+    context: &Context<'_>,
+    complete: bool,
+    content: &mut FileContent,
+) -> Result<Vec<ReadError>, ReadError> {
     let (blocks, findings) = layout::blocks(rows, context)?;
     content.findings.extend(findings);
     content.source.dialect = dialect_name(rows, context, &mut content.inference);
