@@ -40,7 +40,7 @@ pub struct ProbePoint {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub(super) struct CheckTable {
-    /// `w_max`, `strain_energy`, `frequency_1` ..., `load_factor_1` ..., those of a step as `<step>.frequency_1`, or `<probe>.<u|v|w|theta_x|...|moment_x|membrane_x|shear_x ...>`. `w_max` is the
+    /// `w_max`, `in_plane_max`, `strain_energy`, `frequency_1` ..., `load_factor_1` ..., those of a step as `<step>.frequency_1`, or `<probe>.<u|v|w|theta_x|...|moment_x|membrane_x|shear_x ...>`. `w_max` is the
     /// largest displacement along z, whatever the plane of the sheet. Moments, membrane and shear forces are per width and along
     /// the yarns at rest, x the warp and y the weft; displacements and rotations are along the axes of the case. In a motion `w_max` is
     /// the largest at any instant, and all else that of its end. Rotations in large rotations are vectors of half a turn at most: one of
@@ -157,9 +157,10 @@ impl CheckTable {
         let Some(unit) = unit else {
             let names: Vec<&str> = probes.iter().map(|p| p.name.as_str()).collect();
             let message = format!(
-                "there is no quantity `{}` to check: take w_max, strain_energy, frequency_1 ..., load_factor_1 ... (of a step: STEP.frequency_1), or PROBE.COMPONENT with the probes [{}] and \
+                "there is no quantity `{}` to check: take {}, or PROBE.COMPONENT with the probes [{}] and \
                  u v w theta_x theta_y theta_z moment_x moment_y moment_xy membrane_x membrane_y membrane_xy shear_x shear_y",
                 self.quantity,
+                whole_results(analysis),
                 names.join(", ")
             );
             return refused(at.value_place("quantity"), message);
@@ -183,14 +184,30 @@ impl CheckTable {
     }
 }
 
+/// The quantities of a sheet as a whole that an analysis has.
+fn whole_results(analysis: &Analysis) -> &'static str {
+    match analysis {
+        Analysis::Modal(_) => "frequency_1 ...",
+        Analysis::Buckling(_) => "load_factor_1 ...",
+        Analysis::Steps(_) => {
+            "w_max, in_plane_max, strain_energy, STEP.frequency_1 ... and STEP.load_factor_1 ... of a step that looks for them"
+        }
+        Analysis::Linear(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) => {
+            "w_max, in_plane_max, strain_energy"
+        }
+    }
+}
+
 /// SI unit of a quantity by name, if an analysis with these probes has it.
 pub(crate) fn unit_of(quantity: &str, analysis: &Analysis, probes: &[ProbePoint]) -> Option<&'static str> {
     match quantity {
         // Shapes of modes and of buckling have no size.
-        "w_max" | "strain_energy" if matches!(analysis, Analysis::Modal(_) | Analysis::Buckling(_)) => {
+        "w_max" | "in_plane_max" | "strain_energy"
+            if matches!(analysis, Analysis::Modal(_) | Analysis::Buckling(_)) =>
+        {
             return None;
         }
-        "w_max" => return Some("m"),
+        "w_max" | "in_plane_max" => return Some("m"),
         "strain_energy" => return Some("J"),
         _ => {}
     }

@@ -258,7 +258,9 @@ choice!(
     {},
     Some("N·m"),
     |text| {
-        let ratio = text.parse().ok().filter(|nu: &f64| nu.is_finite()).map(Self::Poisson);
+        // A smaller ratio is a rigidity whose unit is missing.
+        let is_ratio = |nu: &f64| nu.is_finite() && (*nu == 0.0 || nu.abs() >= 1e-3);
+        let ratio = text.parse().ok().filter(is_ratio).map(Self::Poisson);
         ratio.or_else(|| text.parse().ok().map(Self::Value))
     },
     |other| match other {
@@ -328,6 +330,7 @@ mod tests {
         assert!(error.contains("C008") && error.contains("huber, bias"), "{error}");
         assert!(toml::from_str::<Assumptions>("torsions = \"huber\"").is_err());
         assert!("416 N".parse::<TransverseShear>().is_err());
+        assert!("1e-6".parse::<BendingCoupling>().is_err());
     }
 
     #[test]

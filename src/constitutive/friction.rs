@@ -43,6 +43,10 @@ pub(super) fn law(
         (Some(along), Some(across)) => {
             widths = vec![(Parameter::Hb, along.direction), (Parameter::Hb, across.direction)];
             let d = section.d_b;
+            if let Some(residual) = assumptions.residual_curvature {
+                let used = of_fabric(along, d[(0, 0)], sheet).couple() / d[(0, 0)];
+                notes.not_used("residual curvature", [residual.si(), f64::NAN, used], "1/cm");
+            }
             ([of_fabric(along, d[(0, 0)], sheet), of_fabric(across, d[(1, 1)], sheet)], source(along))
         }
         _ => (stand_in(section, assumptions, notes)?, (Provenance::Assumed, "residual_curvature".into())),

@@ -190,7 +190,7 @@ fn areal_density(
     let Some(((estimate, from), source)) = measured.or_else(stated).or_else(assumed) else {
         if weighing == Weighing::Unneeded {
             let why = "not known, and nothing of the case depends on it".into();
-            notes.used("areal density", "0 g/m²", (Provenance::Assumed, why));
+            notes.used("areal density", "-", (Provenance::Assumed, why));
             return Ok(0.0);
         }
         return Err(notes.missing(

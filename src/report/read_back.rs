@@ -6,13 +6,15 @@ use nalgebra::{Matrix2, Matrix3};
 use serde::Deserialize;
 
 use crate::characterise::{FabricSheet, Key};
-use crate::constitutive::{Constitutive, InputSource, MeasuredInput, SectionDerivative, Used};
-use crate::finding::errors;
+use crate::constitutive::{
+    Constitutive, Entry, InputSource, MeasuredInput, Provenance, SectionDerivative, Used,
+};
+use crate::finding::{Finding, SectionFact, errors};
 use crate::instrument::{Direction, FabricInfo, Origin, Parameter};
 use crate::quantity::Estimate;
 use crate::report::json::{
     AssumptionEntry, DerivativeEntry, EstimateEntry, ParameterEntry, SectionDocument, SectionEntry,
-    SectionInputEntry, SheetDocument, SheetEntry, Stated,
+    SectionInputEntry, SheetDocument, SheetEntry, Stated, section_document,
 };
 use crate::section::{SectionError, ShellSection};
 
@@ -72,21 +74,19 @@ pub fn read(bytes: &[u8]) -> Result<Option<ReadDocument>, DocumentError> {
         }
         "kesf.section/1" => {
             let document: SectionDocument = serde_json::from_slice(bytes)?;
-            let read = document.sections.into_iter().map(section).collect::<Result<_, _>>()?;
-            Ok(Some(ReadDocument::Sections(read)))
+            Ok(Some(ReadDocument::Sections(sections(document)?)))
         }
         "kesf.fabric/1" => {
             let open: Open = serde_json::from_slice(bytes)?;
             let sheets = open.sheet.fabrics.into_iter().map(sheet);
-            let sections = open.section.sections.into_iter().map(section);
-            let read = sheets.zip(sections).map(|(sheet, section)| Ok((sheet?, section?.1)));
+            let sections = sections(open.section)?;
+            let read = sheets.zip(sections).map(|(sheet, section)| Ok((sheet?, section.1)));
             Ok(Some(ReadDocument::Sections(read.collect::<Result<_, DocumentError>>()?)))
         }
         // Every program writes U3M: ours has the section in its own corner.
         "1.1" => match serde_json::from_slice(bytes) {
             Ok(Material { custom: Custom { kesf: Corner { section: document } } }) => {
-                let read = document.sections.into_iter().map(section).collect::<Result<_, _>>()?;
-                Ok(Some(ReadDocument::Sections(read)))
+                Ok(Some(ReadDocument::Sections(sections(document)?)))
             }
             Err(e) if has_corner(bytes) => Err(e.into()),
             Err(_) => Ok(None),
@@ -177,7 +177,46 @@ fn estimate(entry: EstimateEntry, unit: &str, fabric: &str, of: &str) -> Result<
     Ok(Estimate { mean, sd: entry.sd, n: entry.n, values: Vec::new() })
 }
 
+/// The sections of a document in our units.
+fn sections(document: SectionDocument) -> Result<Vec<(FabricSheet, Constitutive)>, DocumentError> {
+    let ours = section_document([]).units;
+    for (key, unit) in &document.units {
+        if let Some(expected) = ours.get(key).filter(|expected| *expected != unit) {
+            let fabric = document.sections.first().map_or_else(String::new, |entry| entry.fabric.clone());
+            let what = format!("{key} in {unit} where {expected} was expected");
+            return Err(DocumentError::Content { fabric, what });
+        }
+    }
+    document.sections.into_iter().map(section).collect()
+}
+
+/// Numbers of a document that differ by more than this part of themselves are not the same.
+const ALIKE: f64 = 1e-9;
+
+/// Whether the matrices are those that the inputs and the bands of the document are of, and nobody has changed them since.
+fn is_as_made(entry: &SectionEntry) -> bool {
+    let is_same = |a: f64, b: f64| (a - b).abs() <= ALIKE * a.abs().max(b.abs());
+    let of_matrix = |e: &Entry| {
+        let at = |rows: &[&[f64]]| rows.get(e.row.wrapping_sub(1))?.get(e.column.wrapping_sub(1)).copied();
+        match &*e.matrix {
+            "d_m" => at(&entry.d_m.each_ref().map(|row| row.as_slice())),
+            "d_b" => at(&entry.d_b.each_ref().map(|row| row.as_slice())),
+            "d_s" => at(&entry.d_s.each_ref().map(|row| row.as_slice())),
+            _ => None,
+        }
+    };
+    let of_input = |input: &SectionInputEntry| match &*input.name {
+        "thickness" => Some(entry.thickness),
+        "areal density" | "W" => Some(entry.areal_density),
+        _ => None,
+    };
+    let mut matrices = entry.uncertainty.iter().filter_map(|e| Some((e.value, of_matrix(e)?)));
+    let mut inputs = entry.inputs.iter().filter_map(|input| Some((input.mean, of_input(input)?)));
+    matrices.all(|(a, b)| is_same(a, b)) && inputs.all(|(a, b)| is_same(a, b))
+}
+
 fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentError> {
+    let is_as_made = is_as_made(&entry);
     let section = ShellSection {
         d_m: Matrix3::from_fn(|r, c| entry.d_m[r][c]),
         d_b: Matrix3::from_fn(|r, c| entry.d_b[r][c]),
@@ -191,13 +230,23 @@ fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentE
         provenance,
         source,
     };
-    let made = Constitutive {
+    let stated = Constitutive {
         section: section.checked()?,
         law: None,
-        used: entry.assumptions.into_iter().map(used).collect(),
-        inputs: entry.inputs.into_iter().map(input).collect(),
+        used: Vec::new(),
+        inputs: Vec::new(),
         surface_friction: None,
         findings: Vec::new(),
+    };
+    let made = if is_as_made {
+        let used = entry.assumptions.into_iter().map(used).collect();
+        Constitutive { used, inputs: inputs(entry.inputs), ..stated }
+    } else {
+        let source = "the document: changed since it was written".to_string();
+        let name = "matrices, areal density, thickness".into();
+        let used = vec![Used { name, value: "as stated".into(), provenance: Provenance::Stated, source }];
+        let changed = SectionFact::Changed { fabric: entry.fabric.clone() };
+        Constitutive { used, findings: vec![Finding::new(changed)], ..stated }
     };
     let sheet = FabricSheet {
         info: info(entry.fabric.clone(), entry.origin),
@@ -205,6 +254,17 @@ fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentE
         ..Default::default()
     };
     Ok((sheet, made))
+}
+
+/// The inputs of a section. One stand-in for both tensile moduli is one again.
+fn inputs(entries: Vec<SectionInputEntry>) -> Vec<MeasuredInput> {
+    let mut inputs: Vec<MeasuredInput> = entries.into_iter().map(input).collect();
+    let is_assumed = |name: &str| inputs.iter().any(|input| input.name == name && input.estimate.n == 0);
+    if is_assumed("E warp") && is_assumed("E weft") {
+        let moduli = inputs.iter_mut().filter(|input| input.name.starts_with("E "));
+        moduli.for_each(|input| input.source = InputSource::Tensile);
+    }
+    inputs
 }
 
 /// An input of a section, whose sheet is not there.
@@ -230,7 +290,7 @@ mod tests {
     use super::*;
     use crate::constitutive::{Assumptions, entries, section};
     use crate::instrument::MeasuredResult;
-    use crate::report::json::{section_document, sheet_document, text};
+    use crate::report::json::{sheet_document, text};
 
     fn sheet() -> FabricSheet {
         let mut sheet = FabricSheet {
@@ -291,6 +351,29 @@ mod tests {
             made.inputs.iter().map(|i| (i.name.clone(), i.unit(), i.status, i.estimate.n)).collect()
         };
         assert_eq!(names(&made), names(&read[0].1));
+    }
+
+    #[test]
+    fn a_section_that_was_changed_by_hand_is_stated_and_has_no_bands_of_what_it_was() {
+        let made = section(&sheet(), &Assumptions::default()).unwrap();
+        let written = text(&section_document([(&sheet(), &made)])).unwrap();
+        let mut document: serde_json::Value = serde_json::from_str(&written).unwrap();
+        for (pointer, value) in [
+            ("/sections/0/d_b/0/0", 5e-5),
+            ("/sections/0/thickness", 1e-3),
+            ("/sections/0/areal_density", 0.3),
+        ] {
+            let mut changed = document.clone();
+            *changed.pointer_mut(pointer).unwrap() = value.into();
+            let read = super::read(changed.to_string().as_bytes()).unwrap();
+            let Some(ReadDocument::Sections(read)) = read else { panic!("no sections") };
+            let made = &read[0].1;
+            assert!(made.inputs.is_empty() && made.findings[0].code() == "C025", "{pointer}: {made:?}");
+            assert!(made.used.iter().all(|used| used.provenance == Provenance::Stated), "{pointer}");
+        }
+        document["units"]["d_b"] = "gf·cm²/cm".into();
+        let error = super::read(document.to_string().as_bytes()).unwrap_err().to_string();
+        assert!(error.contains("d_b in gf·cm²/cm where N·m was expected"), "{error}");
     }
 
     #[test]

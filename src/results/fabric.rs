@@ -240,13 +240,13 @@ impl FabricReport {
         if result.is_modal() {
             let first = result.frequencies.first().or(result.load_factors.first());
             self.eigenvalues.extend(first.map(|value| (result.case.clone(), *value)));
-        } else if !solved::lies_in_its_plane(result) {
+        } else if !result.lies_in_its_plane() {
             self.deflections.push((result.case.clone(), result.w_max));
         }
         let is_linear = !result.is_modal()
             && result.path.is_none()
             && result.history.is_none()
-            && !solved::lies_in_its_plane(result);
+            && !result.lies_in_its_plane();
         if is_linear && result.w_over_thickness.is_finite() {
             self.relative_deflections.push((result.case.clone(), result.w_over_thickness));
         }

@@ -23,7 +23,7 @@ pub(super) fn fill(rows: &mut [PredictionRow], task: &Task, outcome: &Outcome) {
     let quick = quick(&outcome.findings(task));
     for row in rows {
         let grounds = grounds_of(task, outcome, &inputs, &row.quantity);
-        row.inputs = task.fabric.map(|_| rests_on::status(&grounds).name().to_string());
+        row.inputs = (!inputs.is_empty()).then(|| rests_on::status(&grounds).name().to_string());
         row.status = word(outcome, &grounds, quick.is_some()).map(String::from);
         let both = is_of_both(task, row).then(|| "measured for warp and weft together".to_string());
         let said: Vec<String> =

@@ -243,7 +243,7 @@ impl Outcome {
             Self::Draped(_) => "the shadow of the draped sheet from above",
             Self::Bent(..) => "the shape of a strip under its own weight",
             Self::Solved(_) if picture.contains("-history.") => "displacements and energies along the way",
-            Self::Solved(result) if solved::lies_in_its_plane(result) => "the displacements of a sheet",
+            Self::Solved(result) if result.lies_in_its_plane() => "the displacements of a sheet",
             Self::Solved(_) => "the deflection of a sheet",
             Self::Tested(_) => "the simulated test beside the measured curves",
         };

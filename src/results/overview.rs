@@ -8,7 +8,6 @@ use super::fabric::FabricReport;
 use super::judged::of_inputs;
 use super::page_problems::BEYOND_LINEAR;
 use super::sheet_text::{BOTH, BOTH_LEGEND, mark};
-use super::solved;
 use crate::case::{Analysis, Case, Problem};
 use crate::characterise::{FabricSheet, Key};
 use crate::finding::Place;
@@ -16,6 +15,7 @@ use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
 use crate::report::number::counted;
 use crate::report::table::PredictionRow;
+use crate::study::IN_PLANE;
 
 /// Headings before the deflections, in KES units.
 pub(super) const HEADINGS: [&str; 9] = [
@@ -147,7 +147,7 @@ impl<'c> Prediction<'c> {
             Self::Frequency(case) | Self::LoadFactor(case) => of_case(&report.eigenvalues, case),
         };
         let in_plane = match self {
-            Self::Relative(case) | Self::Deflection(case) => predicted(case, solved::IN_PLANE),
+            Self::Relative(case) | Self::Deflection(case) => predicted(case, IN_PLANE),
             _ => None,
         };
         match (value, self, report.measured_drape()) {

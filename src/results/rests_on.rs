@@ -8,8 +8,10 @@ use serde::{Deserialize, Serialize};
 use super::sheet_text;
 use super::task::Task;
 use crate::characterise::ValueStatus;
-use crate::constitutive::{InputSource, MeasuredInput, law_inputs};
+use crate::constitutive::{InputSource, MeasuredInput, SectionDerivative, law_inputs};
+use crate::finding::{Fact, SectionFact};
 use crate::instrument::{Parameter, Test};
+use crate::quantity::Estimate;
 use crate::study::Prediction;
 
 /// Status of a value that a finding speaks against.
@@ -41,10 +43,11 @@ impl Ground {
             InputSource::Tensile => "E",
             _ => &input.name,
         };
+        let article = if name.starts_with(['E', 'a']) { "an" } else { "a" };
         let text = match input.status {
             ValueStatus::Doubtful => format!("a doubtful {name}"),
             ValueStatus::Assumed if input.estimate.n == 0 => format!("an assumed {name}"),
-            ValueStatus::Assumed => format!("a {name} that rests on an assumption"),
+            ValueStatus::Assumed => format!("{article} {name} that rests on an assumption"),
             ValueStatus::Inferred => format!("an inferred {name}"),
             ValueStatus::Measured if name == "B" => "one B for warp and weft".into(),
             ValueStatus::Measured => return None,
@@ -55,19 +58,32 @@ impl Ground {
 
 /// What the fabric of a task was made of: the inputs of its section, and what its laws with friction have beside them.
 pub(super) fn known(task: &Task) -> Vec<MeasuredInput> {
-    let of_section = task.section().ok().and_then(|(_, made)| made).map(|made| made.inputs);
-    let mut inputs = of_section.unwrap_or_default();
-    for parameter in [Parameter::Hb, Parameter::Hg] {
-        let of_laws = task.fabric.map_or_else(Vec::new, |sheet| law_inputs(sheet, parameter));
-        let unknown = of_laws.into_iter().filter(|law| inputs.iter().all(|input| input.name != law.name));
-        inputs.extend(unknown.collect::<Vec<_>>());
+    let made = task.section().ok().and_then(|(_, made)| made);
+    let is_assumed = |fact: &Fact| matches!(fact, Fact::Section(SectionFact::NoHysteresis { .. }));
+    let has_assumed_width = made.iter().flat_map(|made| &made.findings).any(|f| is_assumed(&f.fact));
+    let mut inputs = made.map_or_else(Vec::new, |made| made.inputs);
+    if has_assumed_width {
+        inputs.push(MeasuredInput {
+            name: Parameter::Hb.symbol().into(),
+            estimate: Estimate::stand_in(f64::NAN),
+            status: ValueStatus::Assumed,
+            source: InputSource::Document,
+            derivative: SectionDerivative::default(),
+        });
+    }
+    // A section that nobody's measurements are known of has no others beside it.
+    let Some(sheet) = task.fabric.filter(|_| !inputs.is_empty() || !task.case.needs_section()) else {
+        return inputs;
+    };
+    for parameter in [Parameter::Hb, Parameter::Hg, Parameter::Wt, Parameter::W] {
+        for law in law_inputs(sheet, parameter) {
+            let is_known = inputs.iter().any(|input| input.name == law.name || is_of(input, &law.name));
+            if !is_known {
+                inputs.push(law);
+            }
+        }
     }
     inputs
-}
-
-/// What a quantity of the fabric of a task rests on that is not to be relied on.
-pub(super) fn of_task(task: &Task, quantity: &str) -> Vec<Ground> {
-    grounds(&known(task), quantity)
 }
 
 /// `an assumed E`, `a doubtful B warp`; nothing for a value of `quantity` that rests on measured values alone.
@@ -86,7 +102,12 @@ pub(super) fn of_symbols(inputs: &[MeasuredInput], symbols: &[&str]) -> Vec<Grou
 pub(super) fn of_prediction(inputs: &[MeasuredInput], prediction: &Prediction) -> Vec<Ground> {
     let shows = |derivative: &f64| derivative.abs() > SHOWS * prediction.value.abs();
     let shown = inputs.iter().zip(&prediction.derivatives).filter(|(_, derivative)| shows(derivative));
-    of_inputs(shown.map(|(input, _)| input))
+    let with_others = shown.flat_map(|(input, _)| match input.name.split_once(' ') {
+        // What stands for a direction was measured along the other one.
+        Some((symbol, direction)) if input.estimate.n == 0 => along(inputs, symbol, direction),
+        _ => vec![input],
+    });
+    of_inputs(with_others)
 }
 
 fn of_inputs<'i>(inputs: impl Iterator<Item = &'i MeasuredInput>) -> Vec<Ground> {
@@ -126,7 +147,10 @@ pub(super) const LEGEND: &str = "? rests on what is doubtful, * on an assumption
 /// `an assumed E and a doubtful B warp`.
 pub(super) fn joined<'g>(grounds: impl IntoIterator<Item = &'g Ground>) -> String {
     let texts: Vec<&str> = grounds.into_iter().map(|ground| &*ground.text).collect();
-    texts.join(" and ")
+    match &texts[..] {
+        [first @ .., before, last] => [first, &[&format!("{before} and {last}")]].concat().join(", "),
+        _ => texts.concat(),
+    }
 }
 
 /// The status that prevails among them.
@@ -140,7 +164,8 @@ fn along<'i>(inputs: &'i [MeasuredInput], symbol: &str, direction: &str) -> Vec<
     let of_symbol: Vec<_> = inputs.iter().filter(|input| is_of(input, symbol)).collect();
     let is_along = |input: &&MeasuredInput| {
         let along = input.name.split_once(' ').map_or("", |(_, along)| along);
-        symbol == "W" || along.is_empty() || direction.is_empty() || along == direction
+        // Both tests of shear measure one constant, the mean of which is used.
+        ["G", "W"].contains(&symbol) || along.is_empty() || direction.is_empty() || along == direction
     };
     let stands_in = of_symbol.iter().filter(|input| is_along(input)).any(|input| input.estimate.n == 0);
     of_symbol.into_iter().filter(|input| stands_in || is_along(input)).collect()
@@ -148,7 +173,7 @@ fn along<'i>(inputs: &'i [MeasuredInput], symbol: &str, direction: &str) -> Vec<
 
 fn is_of(input: &MeasuredInput, symbol: &str) -> bool {
     match symbol {
-        "W" => input.name == "areal density",
+        "W" => ["areal density", "W"].contains(&input.name.as_str()),
         _ => input.name.split(' ').next() == Some(symbol),
     }
 }
@@ -160,14 +185,18 @@ fn symbols(quantity: &str) -> Vec<&'static str> {
     let test = if name == "E" { Some(Test::Tensile) } else { parameter.and_then(Parameter::test) };
     let of_test = test.and_then(|test| test.spec().stiffness.as_ref()).map(|shown| shown.symbol);
     match (of_test, parameter) {
-        // The width of a loop with friction is one of its inputs.
-        (Some(stiffness), Some(Parameter::Hb | Parameter::Hg)) => {
-            [Some(stiffness), parameter.map(Parameter::symbol)].into_iter().flatten().collect()
+        // The width of a loop with friction, and the work of tension, are inputs beside the stiffness.
+        (Some(stiffness), Some(Parameter::Hb | Parameter::Hb05)) => vec![stiffness, "2HB"],
+        (Some(stiffness), Some(Parameter::Hg | Parameter::Hg5)) => vec![stiffness, "2HG"],
+        (Some(stiffness), Some(Parameter::Wt | Parameter::Rt | Parameter::Lt | Parameter::Emt)) => {
+            vec![stiffness, "WT"]
         }
         (Some(stiffness), _) => vec![stiffness],
         (None, _) if test.is_some() => Vec::new(),
         (None, _) if name == OF_STRIP => vec!["B", "W"],
         (None, _) if name == OF_STRIP_WITH_FRICTION => vec!["B", "2HB", "W"],
+        // Loops of strips that find a rigidity of their own, against the weight of the strip.
+        (None, _) if name.starts_with("fab_") => vec!["W"],
         (None, _) => Vec::new(),
     }
 }
@@ -176,9 +205,7 @@ fn symbols(quantity: &str) -> Vec<&'static str> {
 mod tests {
     use super::*;
     use crate::characterise::Key;
-    use crate::constitutive::SectionDerivative;
     use crate::instrument::Direction;
-    use crate::quantity::Estimate;
 
     fn input(name: &str, status: ValueStatus, estimate: Estimate) -> MeasuredInput {
         let key = Key { parameter: Parameter::B, direction: Some(Direction::Warp) };
@@ -249,6 +276,36 @@ mod tests {
         };
         assert_eq!(joined(&of_prediction(&inputs, &prediction([2.0, -2.0]))), "an assumed areal density");
         assert!(of_prediction(&inputs, &prediction([2.0, 1e-3])).is_empty());
+    }
+
+    #[test]
+    fn a_result_on_a_stand_in_rests_on_what_was_measured_along_the_other_direction_too() {
+        let inputs = [measured("B warp", ValueStatus::Doubtful), stand_in("B weft")];
+        let along_weft = Prediction {
+            quantity: "w_max".into(),
+            unit: "m",
+            value: 1.0,
+            derivatives: vec![0.0, -1.0],
+            bands: None,
+            without_spread: Vec::new(),
+            repeats: None,
+        };
+        let said = joined(&of_prediction(&inputs, &along_weft));
+        assert_eq!(said, "a doubtful B warp and an assumed B weft");
+    }
+
+    #[test]
+    fn widths_of_loops_rest_on_the_width_that_was_measured() {
+        let inputs = [measured("B warp", ValueStatus::Measured), measured("2HB warp", ValueStatus::Doubtful)];
+        for quantity in ["2HB warp", "2HB05 warp"] {
+            assert_eq!(said(&inputs, quantity), "a doubtful 2HB warp", "{quantity}");
+        }
+        assert_eq!(said(&inputs, "B warp"), "");
+        let three = [stand_in("G"), stand_in("B warp"), stand_in("areal density")];
+        assert_eq!(
+            joined(&of_symbols(&three, &["G", "B", "W"])),
+            "an assumed G, an assumed B warp and an assumed areal density"
+        );
     }
 
     /// A sheet with tests of the warp alone: what is said of the weft rests on them.

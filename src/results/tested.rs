@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -76,7 +76,7 @@ impl Tested {
             case: case.name.clone(),
             curve,
             comparison: compare_curves(sheet, &simulated),
-            grounds: grounds(task, stiffness.as_ref(), direction),
+            grounds: grounds(task, stiffness.as_ref(), &simulated),
             stiffness,
             simulated,
         }
@@ -99,10 +99,12 @@ impl Tested {
     }
 }
 
-/// What a stiffness along a direction rests on that is not to be relied on.
-fn grounds(task: &Task, stiffness: Option<&Stiffness>, direction: Option<Direction>) -> Vec<Ground> {
-    let along = direction.map_or("", Direction::name);
-    stiffness.map_or_else(Vec::new, |s| rests_on::of_task(task, &format!("{} {along}", s.symbol)))
+/// What a simulated test along a direction rests on that is not to be relied on.
+fn grounds(task: &Task, stiffness: Option<&Stiffness>, simulated: &VirtualCurve) -> Vec<Ground> {
+    let (along, known) = (simulated.direction.map_or("", Direction::name), rests_on::known(task));
+    let of_cycle = simulated.cycle.iter().flat_map(|cycle| cycle.values.keys());
+    let symbols = stiffness.iter().map(|s| s.symbol).chain(of_cycle.map(|parameter| parameter.symbol()));
+    rests_on::each_once(symbols.flat_map(|symbol| rests_on::grounds(&known, &format!("{symbol} {along}"))))
 }
 
 /// Where a simulated curve begins and ends: as the measured one, or as the instrument goes.
@@ -418,8 +420,16 @@ pub(super) fn text(compared: &[(&Task, &Tested)]) -> String {
     if compared.iter().any(|(_, t)| t.stiffness.as_ref().is_some_and(|stiffness| stiffness.is_of_both)) {
         table = table.with_note(BOTH_LEGEND);
     }
+    let uncertain = compared.iter().filter_map(|(_, t)| t.simulated.uncertainty.as_ref());
+    let unknown: BTreeSet<&str> = uncertain.flat_map(|p| &p.without_spread).map(String::as_str).collect();
+    let unknown = unknown.into_iter().collect::<Vec<_>>().join(", ");
+    let without = if unknown.is_empty() {
+        String::new()
+    } else {
+        format!("no band (-) where no spread is known of: {unknown}\n")
+    };
     let notes: Vec<String> = compared.iter().flat_map(|(task, t)| notes(task, t)).collect();
-    [table.text(), notes.concat()].concat()
+    [table.text(), without, notes.concat()].concat()
 }
 
 fn text_row(task: &Task, t: &Tested) -> Vec<String> {

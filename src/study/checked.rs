@@ -1,6 +1,6 @@
 //! `[[checks]]` of a case against its result.
 
-use super::result::{CaseResult, CheckResult};
+use super::result::{CaseResult, CheckResult, IN_PLANE};
 use super::{Case, StudyError, refused};
 use crate::case::{Check, numbered};
 use crate::fields::Resultants;
@@ -9,6 +9,7 @@ use crate::fields::Resultants;
 pub(super) fn lookup(quantity: &str, results: &CaseResult) -> Option<f64> {
     match quantity {
         "w_max" => return Some(results.w_max),
+        IN_PLANE => return Some(results.in_plane_max()),
         "strain_energy" => return Some(results.solution.strain_energy),
         _ => {}
     }

@@ -52,7 +52,7 @@ pub use history::History;
 pub use load_path::{LoadPath, LoadStepEnd, MotionFrame, PathStep};
 pub use mesh_series::{Convergence, MeshSeries};
 pub use prepared::{PreparedCase, validate};
-pub use result::{CaseResult, CheckResult, Probe, Status};
+pub use result::{CaseResult, CheckResult, IN_PLANE, Probe, Status};
 pub use run::solve_case;
 pub use sampling::{SampledQuantity, Sampling, sample, sampling_stages};
 pub use uncertainty::{Prediction, Uncertainty};

@@ -143,6 +143,9 @@ pub struct CaseResult {
     pub(super) error: OnceLock<ErrorEstimate>,
 }
 
+/// Name of the largest displacement within the plane of a sheet that stays in it.
+pub const IN_PLANE: &str = "in_plane_max";
+
 impl CaseResult {
     /// The sheet at the end of one of the `[[steps]]` of the case.
     pub fn at_end_of(&self, step: &LoadStepEnd) -> Self {
@@ -164,6 +167,23 @@ impl CaseResult {
     /// Whether this is a natural mode or a shape of buckling, which has no size.
     pub fn is_modal(&self) -> bool {
         self.modal
+    }
+
+    /// Whether the sheet only stretches and shears: no point of it moves out of its plane x-y by more than a millionth of what it
+    /// moves within.
+    pub fn lies_in_its_plane(&self) -> bool {
+        let within = self.in_plane_max();
+        // Of a motion the largest deflection is that of all instants.
+        let is_flat = |w: f64| w.abs() <= 1e-6 * within;
+        within > 0.0
+            && is_flat(self.w_max)
+            && self.solution.displacement.chunks_exact(6).all(|u| is_flat(u[2]))
+    }
+
+    /// The largest displacement within the plane x-y (m); of a motion the largest displacement of all instants.
+    pub fn in_plane_max(&self) -> f64 {
+        let now = self.solution.displacement.chunks_exact(6).map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
+        self.history.as_ref().map_or(now, |history| history.displacement_max.max(now))
     }
 
     /// Sums of the forces (N) and moments about the origin (N·m) of the supports, at the places where the sheet has

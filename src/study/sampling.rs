@@ -14,6 +14,7 @@
 
 use super::bending::simulate_strip;
 use super::reading::Reading;
+use super::result::IN_PLANE;
 use super::{
     Case, PreparedCase, PreparedTest, Status, StudyError, Watch, as_measured, drape, refused, simulate_cycle,
 };
@@ -111,7 +112,7 @@ pub fn sample(
         return Ok(None);
     };
     // Neither the sheet nor its curves are there, of which a section at other values could be made.
-    if made.inputs.iter().all(|input| input.source == InputSource::Document) {
+    if made.inputs.is_empty() || made.inputs.iter().any(|input| input.source == InputSource::Document) {
         let fact = StudyFact::StatedSection { fabric: sheet.name.clone() };
         return Ok(Some(Sampling::without_bands(case, plan, fact)));
     }
@@ -195,7 +196,12 @@ fn of_sheet(prepared: &PreparedCase<'_>, made: &Constitutive) -> Result<Vec<Read
     if result.status == Status::NotConverged {
         return Ok(Vec::new());
     }
-    let mut readings = vec![Reading::new("w_max", result.w_max, "m")];
+    let largest = if result.lies_in_its_plane() {
+        Reading::new(IN_PLANE, result.in_plane_max(), "m")
+    } else {
+        Reading::new("w_max", result.w_max, "m")
+    };
+    let mut readings = vec![largest];
     for probe in &result.probes {
         let components = ["u", "v", "w"].into_iter().zip(probe.value.u);
         readings.extend(components.map(|(c, v)| Reading::new(format!("{}.{c}", probe.name), v, "m")));
@@ -213,7 +219,7 @@ struct Sampler<'a> {
 
 impl Sampler<'_> {
     fn run(self, sheet: &FabricSheet, made: &Constitutive, watch: Watch<'_>) -> Result<Sampling, StudyError> {
-        let sheet = &without_records(sheet);
+        let sheet = &self.with_stand_ins(&without_records(sheet));
         let mut quantities: Vec<SampledQuantity> = ((self.evaluate)(sheet, made)?.into_iter())
             .map(|Reading { quantity, unit, value }| SampledQuantity {
                 quantity,
@@ -272,6 +278,17 @@ impl Sampler<'_> {
         let SamplingPlan { points, seed, exact } = self.plan.clone();
         let exact = exact.into_iter().map(|name| name.value).collect();
         Ok(Sampling { inputs: self.inputs, points, seed, exact, quantities, findings })
+    }
+
+    /// The sheet with what stands for a direction that it does not have, as a value of that direction: it stays where it is while the
+    /// value of the other one moves.
+    fn with_stand_ins(&self, sheet: &FabricSheet) -> FabricSheet {
+        let is_of_direction = |input: &&MeasuredInput| {
+            input.estimate.n == 0 && matches!(input.source, InputSource::Value(_) | InputSource::Modulus(..))
+        };
+        let stand_ins: Vec<MeasuredInput> = self.inputs.iter().filter(is_of_direction).cloned().collect();
+        let values: Vec<f64> = stand_ins.iter().map(|input| input.estimate.mean).collect();
+        perturbed(sheet, self.assumptions, &stand_ins, &values).0
     }
 
     fn band(

@@ -133,3 +133,25 @@ fn the_examples_are_read() {
         assert_eq!(sampling_stages(&Case::read(&file).unwrap()), 256);
     }
 }
+
+/// The warp alone was tested: what stands for the weft is taken as exact, and does not move with the spread of the warp.
+#[test]
+fn what_stands_for_a_direction_has_none_of_the_spread_of_the_other() {
+    let mut sheet = sheet(Estimate { mean: 0.15, sd: Some(1e-9), n: 500, values: Vec::new() });
+    sheet.values.remove(&Key { parameter: Parameter::B, direction: Some(Direction::Weft) });
+    let with = |exact: &str| {
+        let case = case(&format!(
+            "[bending_test]\ntest = \"cantilever\"\ncells = 8\n[uncertainty]\npoints = 16\n{exact}"
+        ))
+        .unwrap();
+        let made = constitutive::section(&sheet, case.assumptions().unwrap()).unwrap();
+        sample(&case, &sheet, &made, Watch::default()).unwrap().unwrap()
+    };
+    let open = with("");
+    assert_eq!(open.of("bending_length weft").unwrap().without_spread, ["B weft"]);
+    assert!(open.of("bending_length warp").unwrap().mean_fabric.is_some());
+    let exact = with("exact = [\"B weft\"]\n");
+    let [low, high] = exact.of("bending_length weft").unwrap().mean_fabric.unwrap().interval;
+    assert!((high / low).ln() < 1e-6, "{low} to {high}");
+    assert_eq!(exact.of("bending_length warp"), open.of("bending_length warp"));
+}

@@ -9,6 +9,7 @@
 use serde::Serialize;
 
 use super::StudyError;
+use super::result::IN_PLANE;
 use crate::constitutive::{MeasuredInput, SectionDerivative, bands};
 use crate::element::Mass;
 use crate::fields::{Locator, Recovery, Resultants};
@@ -324,6 +325,13 @@ fn readings(
     let largest = nodes.max_by(|a, b| w(*a).total_cmp(&w(*b)));
     if let Some(node) = largest.filter(|_| is_solved(&Dof::W)) {
         all.push(("w_max".into(), "m", Reading::Displacement(vec![(6 * node + 2, 1.0)])));
+    }
+    let within = |n: usize| solution.displacement[6 * n].hypot(solution.displacement[6 * n + 1]);
+    let nodes = model.mesh.quads.iter().flatten().map(|n| *n as usize);
+    let farthest = nodes.max_by(|a, b| within(*a).total_cmp(&within(*b)));
+    if let Some(node) = farthest.filter(|node| is_solved(&Dof::U) && within(*node) > 0.0) {
+        let along = |dof: usize| (6 * node + dof, solution.displacement[6 * node + dof] / within(node));
+        all.push((IN_PLANE.into(), "m", Reading::Displacement(vec![along(0), along(1)])));
     }
     for (number, (name, locator)) in probes.iter().enumerate() {
         for dof in Dof::ALL.into_iter().filter(is_solved) {

@@ -121,8 +121,13 @@ super::facts! {
             /// ν12 and ν21.
             ratios: [f64; 2],
         } = "{fabric}: the assumed Poisson's ratio makes nu12 {} and nu21 {}, as warp and weft differ so much: stretched along one yarn the sheet \
-             would narrow by more than it grows; state a smaller one, or poisson_rule = \"major\"",
+             would narrow by more than it grows; state a smaller one",
             significant(ratios[0]), significant(ratios[1]);
+        /// A section of a document whose matrices are not those of its inputs.
+        "C025" Changed {
+            /// Name of the fabric.
+            fabric: String,
+        } = "{fabric}: the document was changed since it was written: its numbers are stated, and its inputs and bands, which are of others, are left out";
         /// No hysteresis of bending.
         "C017" NoHysteresis {
             /// Name of the fabric.

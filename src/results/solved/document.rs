@@ -87,6 +87,9 @@ pub struct QuantityEntry {
 struct ResultsEntry {
     w_max: QuantityEntry,
     w_over_bending_thickness: Option<f64>,
+    /// The largest displacement within the plane of a sheet that stays in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    in_plane_max: Option<QuantityEntry>,
     probes: IndexMap<String, ProbeEntry>,
     /// Sums over the supports; a motion in time and a mode have none.
     reactions: Option<[f64; 3]>,
@@ -196,6 +199,9 @@ fn results(task: &Task, result: &CaseResult) -> ResultsEntry {
     ResultsEntry {
         // The shape of a mode has no size.
         w_max: QuantityEntry { value: result.w_max, unit: if result.is_modal() { "1" } else { "m" }.into() },
+        in_plane_max: result
+            .lies_in_its_plane()
+            .then(|| QuantityEntry { value: result.in_plane_max(), unit: "m".into() }),
         w_over_bending_thickness: (!result.is_modal()).then_some(result.w_over_thickness),
         probes: result.probes.iter().map(|p| (p.name.clone(), ProbeEntry::new(p))).collect(),
         reactions: reactions.map(|[force, _]| force.into()),

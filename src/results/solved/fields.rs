@@ -9,7 +9,7 @@ use crate::report::vtu::{MeshField, vtu};
 use crate::results::failure::Failure;
 use crate::results::sampled;
 use crate::results::task::Task;
-use crate::study::{CaseResult, StudyError};
+use crate::study::{CaseResult, IN_PLANE, StudyError};
 
 /// Name, components and values of a field.
 pub type Field<'a> = (&'a str, usize, Vec<f64>);
@@ -55,21 +55,6 @@ fn shown(result: &CaseResult) -> Option<String> {
     }
     let end = result.history.as_ref()?.time.last()?;
     Some(format!("at its end, {} s", significant(*end)))
-}
-
-/// Whether a sheet only stretches and shears: no point of it moves out of its plane by more than a millionth of what it moves within.
-pub(in crate::results) fn lies_in_its_plane(result: &CaseResult) -> bool {
-    let within = largest_in_plane(result);
-    // Of a motion the largest deflection is that of all instants.
-    let is_flat = |w: f64| w.abs() <= 1e-6 * within;
-    within > 0.0
-        && is_flat(result.w_max)
-        && result.solution.displacement.chunks_exact(6).all(|u| is_flat(u[2]))
-}
-
-/// The largest displacement within the plane x-y (m).
-pub(in crate::results) fn largest_in_plane(result: &CaseResult) -> f64 {
-    result.solution.displacement.chunks_exact(6).map(|u| u[0].hypot(u[1])).fold(0.0, f64::max)
 }
 
 /// `along x`, or `at 30° to x`, of a warp in the plane x-y.
@@ -148,13 +133,14 @@ impl Mesh {
             1 => "one bending cell".into(),
             many => format!("{many} smoothing cells"),
         };
-        let (quantity, values, profile) = if lies_in_its_plane(result) {
+        let (quantity, values, profile) = if result.lies_in_its_plane() {
             ("Displacement", &self.within, Curve::default())
         } else {
             ("Deflection w", &self.w, result.profile.clone())
         };
         let (quantity, unit) = if result.is_modal() { ("Shape", "") } else { (quantity, "m") };
-        let bands = sampled::values(task, "w_max", "mm", 1e-3).into_iter();
+        let largest = if result.lies_in_its_plane() { IN_PLANE } else { "w_max" };
+        let bands = sampled::values(task, largest, "mm", 1e-3).into_iter();
         let shown = shown(result).map_or_else(String::new, |what| format!("; {what}"));
         let warp = warp(&result.model.warp).map_or_else(String::new, |along| format!("; warp {along}"));
         FieldPlot {
@@ -169,7 +155,7 @@ impl Mesh {
             profile_along: "x of the flat sheet, middle line".into(),
             profile,
             notes: (warning.into_iter())
-                .chain(bands.map(|(band, value)| format!("{band}: largest |w| {value}")))
+                .chain(bands.map(|(band, value)| format!("{band}: {largest} {value}")))
                 .chain(result.findings.iter().map(|f| f.message()))
                 .collect(),
             ..FieldPlot::default()

@@ -1,6 +1,5 @@
 //! What the results of a sheet rest on that is not to be relied on.
 
-use super::fields::lies_in_its_plane;
 use crate::constitutive::MeasuredInput;
 use crate::model::Load;
 use crate::results::rests_on::{self, Ground};
@@ -25,13 +24,16 @@ pub(in crate::results) fn grounds(
             return rests_on::of_prediction(&uncertainty.inputs, prediction);
         }
     }
-    let mut symbols = match (lies_in_its_plane(result), result.state.is_some()) {
+    // What steps look for is of the sheet as it stretches and bends, whether it lies in its plane or not.
+    let [is_frequency, is_factor] = ["frequency_", "load_factor_"].map(|kind| quantity.contains(kind));
+    let in_plane = result.lies_in_its_plane() && !is_frequency && !is_factor;
+    let mut symbols = match (in_plane, result.state.is_some()) {
         (true, _) => vec!["E", "G"],
         (false, true) => vec!["E", "G", "B"],
         (false, false) => vec!["B"],
     };
     let is_heavy = result.model.loads.iter().any(|load| matches!(load, Load::Gravity(_)));
-    if is_heavy || !result.frequencies.is_empty() || result.history.is_some() {
+    if is_heavy || is_frequency || result.history.is_some() {
         symbols.push("W");
     }
     if result.law.is_some() {

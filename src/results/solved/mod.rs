@@ -13,7 +13,7 @@ mod text;
 pub(super) use document::entry;
 pub use document::{ModelEntry, QuantityEntry, SolutionEntry};
 pub use effort::{SolverEntry, TimingsEntry};
-pub(super) use fields::{largest_in_plane, lies_in_its_plane, mesh_fields, resultants};
+pub(super) use fields::{mesh_fields, resultants};
 pub(super) use grounds::grounds;
 pub(crate) use text::checks;
 pub(super) use text::{status, text};
@@ -26,7 +26,7 @@ use super::task::Task;
 use crate::finding::{Fact, Finding, StudyFact};
 use crate::report::chart;
 use crate::report::table::{PredictionRow, history_rows};
-use crate::study::CaseResult;
+use crate::study::{CaseResult, IN_PLANE};
 
 /// Whether a finding says that a search found no equilibrium, or none at the whole load.
 fn is_unconverged(finding: &Finding) -> bool {
@@ -49,17 +49,14 @@ pub(super) fn unconverged(task: &Task, result: &CaseResult) -> Option<Failure> {
     Some(Failure::from(finding).of(&task.name()))
 }
 
-/// The largest displacement within the plane of a sheet that stays in it.
-pub(super) const IN_PLANE: &str = "in_plane_max";
-
 /// The largest deflection, that of each probe and what steps have looked for; or the natural frequencies or load factors. Of a sheet
 /// that stays in its plane its displacements there.
 pub(super) fn rows(task: &Task, result: &CaseResult) -> Vec<PredictionRow> {
     if result.is_modal() {
         return eigenvalues(task, result, "", [&result.frequencies, &result.load_factors]);
     }
-    let (mut rows, components) = if lies_in_its_plane(result) {
-        (vec![row(task, result, IN_PLANE.into(), largest_in_plane(result), "m")], &["u", "v"][..])
+    let (mut rows, components) = if result.lies_in_its_plane() {
+        (vec![row(task, result, IN_PLANE.into(), result.in_plane_max(), "m")], &["u", "v"][..])
     } else {
         (vec![row(task, result, "w_max".into(), result.w_max, "m")], &["w"][..])
     };

@@ -2,14 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use super::fields::{largest_in_plane, lies_in_its_plane};
 use super::{adapted, all_grounds, convergence, effort, search};
 use crate::model::Model;
 use crate::quantity::significant;
 use crate::results::columns::Columns;
 use crate::results::rests_on;
 use crate::results::task::Task;
-use crate::study::{CaseResult, Status};
+use crate::study::{CaseResult, IN_PLANE, Status};
 
 /// Deflections, then frequencies, probes, what the mesh leaves open, histories, searches and checks; with `verbose`
 /// every step of a search; then why a deflection has no band; with `verbose` what each solution took.
@@ -17,8 +16,17 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
     let headings =
         ["case", "fabric", "w_max (mm)", "± 95 % (mm)", "w/t_b", "elements", "energy error (%)", "status"];
     let mut table = Columns::new(headings);
-    let mut in_plane =
-        Columns::new(["case", "fabric", "in plane (mm)", "elements", "energy error (%)", "status"]);
+    let mut in_plane = Columns::new([
+        "case",
+        "fabric",
+        "in plane (mm)",
+        "± 95 % (mm)",
+        "elements",
+        "energy error (%)",
+        "status",
+    ]);
+    let mut probes_in_plane =
+        Columns::new(["probe", "case", "fabric", "u (mm)", "± 95 % (mm)", "v (mm)", "± 95 % (mm)"]);
     let mut probes = Columns::new(["probe", "case", "fabric", "u (mm)", "v (mm)", "w (mm)", "± 95 % (mm)"]);
     let mut modes = Columns::new(["mode", "case", "fabric", "frequency (Hz)", "± 95 % (Hz)", "elements"]);
     let mut factors = Columns::new(["buckle", "case", "fabric", "load factor", "elements"]);
@@ -44,18 +52,25 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
         let [w, ratio] = [significant(1e3 * r.w_max) + &mark, significant(r.w_over_thickness)];
         let elements = elements(&r.model);
         let status = status(r.status).to_string();
-        if lies_in_its_plane(r) {
-            let within = significant(1e3 * largest_in_plane(r)) + &mark;
-            in_plane.row([r.case.clone(), fabric.clone(), within, elements, error(r), status]);
+        if r.lies_in_its_plane() {
+            let within = significant(1e3 * r.in_plane_max()) + &mark;
+            let half = half_width(r, IN_PLANE, 1e3);
+            in_plane.row([r.case.clone(), fabric.clone(), within, half, elements, error(r), status]);
         } else {
             let half = half_width(r, "w_max", 1e3);
             table.row([r.case.clone(), fabric.clone(), w, half, ratio, elements, error(r), status]);
         }
         for p in &r.probes {
             let u = p.value.u.map(|u| significant(1e3 * u));
-            let half = half_width(r, &format!("{}.w", p.name), 1e3);
-            probes
-                .row([vec![p.name.clone(), r.case.clone(), fabric.clone()], u.to_vec(), vec![half]].concat());
+            let half = |component: &str| half_width(r, &format!("{}.{component}", p.name), 1e3);
+            let head = [p.name.clone(), r.case.clone(), fabric.clone()];
+            if r.lies_in_its_plane() {
+                let [u, v, _] = u.map(|u| u + &mark);
+                probes_in_plane.row(head.into_iter().chain([u, half("u"), v, half("v")]));
+            } else {
+                let [u, v, w] = u;
+                probes.row(head.into_iter().chain([u, v, w + &mark, half("w")]));
+            }
         }
     }
     if beyond > 1 {
@@ -72,6 +87,7 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
         modes.filled(),
         factors.filled(),
         probes.filled(),
+        probes_in_plane.filled(),
         convergence::table(solved),
         adapted::meshes(solved),
         adapted::quantities(solved),
@@ -120,7 +136,7 @@ fn histories(solved: &[(&Task, &CaseResult)]) -> Option<Columns> {
 fn without_band(solved: &[(&Task, &CaseResult)]) -> Option<String> {
     let first = |(_, r): &(&Task, &CaseResult)| {
         let u = r.uncertainty.as_ref()?;
-        u.of("w_max").or_else(|| u.of("frequency_1")).cloned()
+        u.of("w_max").or_else(|| u.of("frequency_1")).or_else(|| u.of(IN_PLANE)).cloned()
     };
     let uncertain: Vec<_> = solved.iter().filter_map(first).collect();
     let names: BTreeSet<&str> =
