@@ -50,11 +50,16 @@ pub fn perturbed(
 ) -> (FabricSheet, Assumptions) {
     let (mut sheet, mut assumptions) = (sheet.clone(), assumptions.clone());
     for (input, &value) in inputs.iter().zip(values) {
-        let stand_in = || Estimate::stand_in(value);
         match &input.source {
-            InputSource::Value(key) => sheet.values.entry(*key).or_insert_with(stand_in).mean = value,
+            InputSource::Value(key) => {
+                sheet.values.entry(*key).or_insert_with(|| Estimate::stand_in(value)).mean = value
+            }
             InputSource::Modulus(name, direction) => {
-                sheet.moduli.entry((name.clone(), *direction)).or_insert_with(stand_in).mean = value;
+                sheet
+                    .moduli
+                    .entry((name.clone(), *direction))
+                    .or_insert_with(|| Estimate::stand_in(value))
+                    .mean = value;
             }
             InputSource::Thickness => match &mut sheet.info.thickness {
                 Some(stated) => *stated = value,

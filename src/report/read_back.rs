@@ -195,24 +195,34 @@ const ALIKE: f64 = 1e-9;
 
 /// Whether the matrices are those that the inputs and the bands of the document are of, and nobody has changed them since.
 fn is_as_made(entry: &SectionEntry) -> bool {
-    let is_same = |a: f64, b: f64| (a - b).abs() <= ALIKE * a.abs().max(b.abs());
-    let of_matrix = |e: &Entry| {
-        let at = |rows: &[&[f64]]| rows.get(e.row.wrapping_sub(1))?.get(e.column.wrapping_sub(1)).copied();
-        match &*e.matrix {
-            "d_m" => at(&entry.d_m.each_ref().map(|row| row.as_slice())),
-            "d_b" => at(&entry.d_b.each_ref().map(|row| row.as_slice())),
-            "d_s" => at(&entry.d_s.each_ref().map(|row| row.as_slice())),
-            _ => None,
-        }
-    };
-    let of_input = |input: &SectionInputEntry| match &*input.name {
-        "thickness" => Some(entry.thickness),
-        "areal density" | "W" => Some(entry.areal_density),
+    let mut matrices = entry.uncertainty.iter().filter_map(|e| Some((e.value, number_of(entry, e)?)));
+    let mut inputs =
+        entry.inputs.iter().filter_map(|input| Some((input.mean, stated_as(entry, &input.name)?)));
+    matrices.all(are_alike) && inputs.all(are_alike)
+}
+
+fn are_alike((a, b): (f64, f64)) -> bool {
+    (a - b).abs() <= ALIKE * a.abs().max(b.abs())
+}
+
+/// The number of a section at the place of an entry of its list of bands.
+fn number_of(section: &SectionEntry, at: &Entry) -> Option<f64> {
+    let (row, column) = (at.row.checked_sub(1)?, at.column.checked_sub(1)?);
+    match &*at.matrix {
+        "d_m" => section.d_m.get(row)?.get(column).copied(),
+        "d_b" => section.d_b.get(row)?.get(column).copied(),
+        "d_s" => section.d_s.get(row)?.get(column).copied(),
         _ => None,
-    };
-    let mut matrices = entry.uncertainty.iter().filter_map(|e| Some((e.value, of_matrix(e)?)));
-    let mut inputs = entry.inputs.iter().filter_map(|input| Some((input.mean, of_input(input)?)));
-    matrices.all(|(a, b)| is_same(a, b)) && inputs.all(|(a, b)| is_same(a, b))
+    }
+}
+
+/// The number of a section that is one of its inputs.
+fn stated_as(section: &SectionEntry, input: &str) -> Option<f64> {
+    match input {
+        "thickness" => Some(section.thickness),
+        "areal density" | "W" => Some(section.areal_density),
+        _ => None,
+    }
 }
 
 fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentError> {
@@ -259,10 +269,10 @@ fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentE
 /// The inputs of a section. One stand-in for both tensile moduli is one again.
 fn inputs(entries: Vec<SectionInputEntry>) -> Vec<MeasuredInput> {
     let mut inputs: Vec<MeasuredInput> = entries.into_iter().map(input).collect();
-    let is_assumed = |name: &str| inputs.iter().any(|input| input.name == name && input.estimate.n == 0);
-    if is_assumed("E warp") && is_assumed("E weft") {
-        let moduli = inputs.iter_mut().filter(|input| input.name.starts_with("E "));
-        moduli.for_each(|input| input.source = InputSource::Tensile);
+    let moduli: Vec<&mut MeasuredInput> =
+        inputs.iter_mut().filter(|input| input.name.starts_with("E ") && input.estimate.n == 0).collect();
+    if moduli.len() > 1 {
+        moduli.into_iter().for_each(|input| input.source = InputSource::Tensile);
     }
     inputs
 }

@@ -59,8 +59,8 @@ impl Ground {
 /// What the fabric of a task was made of: the inputs of its section, and what its laws with friction have beside them.
 pub(super) fn known(task: &Task) -> Vec<MeasuredInput> {
     let made = task.section().ok().and_then(|(_, made)| made);
-    let is_assumed = |fact: &Fact| matches!(fact, Fact::Section(SectionFact::NoHysteresis { .. }));
-    let has_assumed_width = made.iter().flat_map(|made| &made.findings).any(|f| is_assumed(&f.fact));
+    let mut facts = made.iter().flat_map(|made| &made.findings).map(|finding| &finding.fact);
+    let has_assumed_width = facts.any(|fact| matches!(fact, Fact::Section(SectionFact::NoHysteresis { .. })));
     let mut inputs = made.map_or_else(Vec::new, |made| made.inputs);
     if has_assumed_width {
         inputs.push(MeasuredInput {
@@ -100,8 +100,8 @@ pub(super) fn of_symbols(inputs: &[MeasuredInput], symbols: &[&str]) -> Vec<Grou
 
 /// The same of a linear result, by what it changes with.
 pub(super) fn of_prediction(inputs: &[MeasuredInput], prediction: &Prediction) -> Vec<Ground> {
-    let shows = |derivative: &f64| derivative.abs() > SHOWS * prediction.value.abs();
-    let shown = inputs.iter().zip(&prediction.derivatives).filter(|(_, derivative)| shows(derivative));
+    let least = SHOWS * prediction.value.abs();
+    let shown = inputs.iter().zip(&prediction.derivatives).filter(|(_, derivative)| derivative.abs() > least);
     let with_others = shown.flat_map(|(input, _)| match input.name.split_once(' ') {
         // What stands for a direction was measured along the other one.
         Some((symbol, direction)) if input.estimate.n == 0 => along(inputs, symbol, direction),
