@@ -9,7 +9,7 @@ use super::loads::{Prescribed, SheetLoad, SheetLoads};
 use super::motion::{Newmark, NewmarkTable, Rotations, mass};
 use super::nonlinear::NonlinearTable;
 use super::sheet::Sheet;
-use super::step_analysis::SheetStep;
+use super::step_analysis::{SheetStep, StepAnalysis};
 use super::supports::SheetSupport;
 use crate::element::Mass;
 use crate::finding::{Located, Node, TomlError};
@@ -203,6 +203,28 @@ impl Analysis {
             Self::Newmark(newmark) => &newmark.loads,
             Self::Modal(_) => &[],
         }
+    }
+
+    /// Whether it looks at vibrations or motions in time, of which there are none without mass.
+    pub fn has_inertia(&self) -> bool {
+        match self {
+            Self::Modal(_) | Self::Newmark(_) => true,
+            Self::Linear(_) | Self::Nonlinear(_) | Self::Buckling(_) => false,
+            Self::Steps(steps) => steps
+                .iter()
+                .any(|step| matches!(step.analysis, StepAnalysis::Modal { .. } | StepAnalysis::Motion(_))),
+        }
+    }
+
+    /// Whether the sheet has its own weight in it, in any of its steps.
+    pub fn has_weight(&self) -> bool {
+        let loads: Vec<&SheetLoad> = match self {
+            Self::Steps(steps) => steps.iter().flat_map(|step| step.acting()).collect(),
+            Self::Linear(_) | Self::Modal(_) | Self::Buckling(_) | Self::Newmark(_) | Self::Nonlinear(_) => {
+                self.loads().iter().collect()
+            }
+        };
+        loads.into_iter().any(|load| matches!(load, SheetLoad::Gravity(_)))
     }
 
     /// What is prescribed, in the last of its steps that changes anything; nothing in a modal analysis and in a motion.

@@ -269,20 +269,12 @@ impl Case {
             && !matches!(self.problem, Problem::InstrumentTest(InstrumentTest::Compression(_)))
     }
 
-    /// Whether its result depends on the mass of the sheet: own weight and inertia do. Searches in large rotations may move through
-    /// states of other equilibrium with it.
+    /// Whether its result depends on the mass of the sheet: that of own weight and of inertia does.
     pub fn needs_mass(&self) -> bool {
         match &self.problem {
             Problem::InstrumentTest(_) => false,
             Problem::BendingTest(_) | Problem::Drape(_) => true,
-            Problem::Sheet(sheet) => match &sheet.analysis {
-                Analysis::Linear(Linear { loads, .. }) | Analysis::Buckling(Buckling { loads, .. }) => {
-                    loads.acting.iter().any(|load| matches!(load, SheetLoad::Gravity(_)))
-                }
-                Analysis::Modal(_) | Analysis::Newmark(_) | Analysis::Nonlinear(_) | Analysis::Steps(_) => {
-                    true
-                }
-            },
+            Problem::Sheet(sheet) => sheet.analysis.has_inertia() || sheet.analysis.has_weight(),
         }
     }
 

@@ -93,7 +93,9 @@ impl<'w> Batch<'w> {
         })?;
         for (task, outcome) in &tasks {
             match outcome {
-                Ok(outcome) => failures.extend(outcome.failures(task)),
+                Ok(outcome) => {
+                    failures.extend(outcome.failures(task).into_iter().chain(outcome.nothing(task)))
+                }
                 Err(failure) => failures.push(failure.clone()),
             }
         }

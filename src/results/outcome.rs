@@ -306,11 +306,20 @@ impl Outcome {
         }
     }
 
+    /// O055: a test that the fabric has nothing for; in a batch of many fabrics it is left out.
+    pub(super) fn nothing(&self, task: &Task) -> Option<Failure> {
+        let Self::Tested(tested) = self else { return None };
+        let text = format!("{} has nothing to simulate", task.name());
+        let hint = "compression takes T0 and Tm of the fabric, T0 the larger of both: add KES-FB3 records, or both to a result table";
+        tested.is_empty().then(|| task.located(Failure::new("O055", text).hint(hint)))
+    }
+
     /// Whether it holds anything to go on with.
     pub fn is_useful(&self) -> bool {
         match self {
             Self::Solved(result) => result.status != Status::NotConverged,
-            Self::Draped(_) | Self::Tested(_) => true,
+            Self::Draped(_) => true,
+            Self::Tested(tested) => !tested.is_empty(),
             Self::Bent(result, failures) => failures.is_empty() || !result.is_empty(),
         }
     }

@@ -8,7 +8,7 @@ use super::build::Actions;
 use super::effort::within_limits;
 use super::limits::Extent;
 use super::{Case, StudyError, build, placed, refused, sheet_problem};
-use crate::case::{Analysis, Newmark, Outline, ProbePoint, Problem, Sheet, SheetProblem, StepAnalysis};
+use crate::case::{Analysis, Newmark, Outline, ProbePoint, Problem, Sheet, SheetProblem};
 use crate::fields::{Finder, Locator, Recovery, SampledLine};
 use crate::finding::Located;
 use crate::mesh::QuadMesh;
@@ -151,17 +151,6 @@ fn moving(mut groups: Vec<DofGroup>, newmark: &Newmark) -> Vec<DofGroup> {
     groups
 }
 
-/// Whether an analysis looks at vibrations or motions in time.
-fn needs_mass(analysis: &Analysis) -> bool {
-    match analysis {
-        Analysis::Modal(_) | Analysis::Newmark(_) => true,
-        Analysis::Linear(_) | Analysis::Nonlinear(_) | Analysis::Buckling(_) => false,
-        Analysis::Steps(steps) => steps
-            .iter()
-            .any(|step| matches!(step.analysis, StepAnalysis::Modal { .. } | StepAnalysis::Motion(_))),
-    }
-}
-
 /// Whether a case can be solved, as far as that shows without solving it: its own section, mesh, supports, loads,
 /// probes, checks and solver.
 ///
@@ -176,7 +165,7 @@ pub fn validate(case: &Case, options: &Options) -> Result<(), StudyError> {
         Problem::Sheet(problem) => {
             let model = build::model_on(case, problem, &problem.sheet, section)?;
             build::check(&model, problem.analysis.has_large_rotations())?;
-            if model.section.areal_density <= 0.0 && needs_mass(&problem.analysis) {
+            if model.section.areal_density <= 0.0 && problem.analysis.has_inertia() {
                 return Err(SolveError::NoMass.into());
             }
             build::steps(case, problem, &model)?;

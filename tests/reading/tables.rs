@@ -440,3 +440,17 @@ fn titles_of_fabrics_over_directions() {
     let n: Vec<usize> = counted.results.iter().map(|(_, v)| v.n).collect();
     assert_eq!(n, [3, 10]);
 }
+
+/// A row without a direction is a value of the fabric, also under a column that is called `mean`; a mean beside the values of warp and
+/// weft sums them up.
+#[test]
+fn a_row_without_a_direction_is_no_mean_of_the_others() {
+    let own =
+        read("parameter,direction,mean,sd,n,unit\nB,warp,0.10,0.01,5,gf·cm²/cm\nB,,0.05,0.005,5,gf·cm²/cm\n");
+    let none = String::new;
+    assert_eq!(values(&own), [(none(), Parameter::B, None, 0.05), (none(), Parameter::B, WARP, 0.1)]);
+    assert_eq!((told(&own, "R110").len(), told(&own, "R136").len()), (0, 1), "{:?}", own.findings);
+    let beside = read("parameter,unit,warp,weft,mean\nB,gf·cm²/cm,0.10,0.05,0.075\n");
+    assert_eq!(values(&beside), [(none(), Parameter::B, WARP, 0.1), (none(), Parameter::B, WEFT, 0.05)]);
+    assert_eq!(told(&beside, "R110").len(), 1, "{:?}", beside.findings);
+}

@@ -236,16 +236,22 @@ impl Table<'_, '_> {
 
     /// R136: a value without a direction beside one of the same parameter and fabric with one.
     pub(super) fn note_without_direction(&mut self) {
-        let singles: Vec<&Datum> =
-            self.data.iter().filter(|d| d.parameter.is_directional() && d.statistic.is_none()).collect();
+        // Below a column of means, rows are what they are below one of values.
+        let singles: Vec<&Datum> = (self.data.iter())
+            .filter(|d| d.parameter.is_directional() && (d.statistic.is_none() || d.is_mean_of_column()))
+            .collect();
         let directed: BTreeSet<(Option<&str>, Parameter)> = singles
             .iter()
             .filter(|d| d.direction.is_some())
             .map(|d| (d.fabric.as_deref(), d.parameter))
             .collect();
+        // A mean beside values of directions sums these up.
+        let lines: BTreeSet<usize> =
+            singles.iter().filter(|d| d.direction.is_some()).map(|d| d.line).collect();
         let found: Vec<&&Datum> = singles
             .iter()
             .filter(|d| d.direction.is_none() && directed.contains(&(d.fabric.as_deref(), d.parameter)))
+            .filter(|d| d.statistic.is_none() || !lines.contains(&d.line))
             .collect();
         // Each fabric has its own, whose values it makes doubtful.
         let mut of_fabric: BTreeMap<Option<&str>, (&Datum, BTreeSet<Parameter>)> = BTreeMap::new();

@@ -55,8 +55,12 @@ impl<'t> Table<'t, '_> {
     /// Averages repeats, leaves out what sums up others, refuses contradictions, and says so.
     pub(super) fn finish(mut self) -> Result<Contents, ReadError> {
         let groups = self.groups();
-        let both: BTreeSet<(Option<String>, Parameter)> =
-            groups.iter().filter(|g| g.key.2.is_some()).map(|g| (g.key.0.clone(), g.key.1)).collect();
+        // Lines of values along a direction.
+        let mut directed = BTreeMap::<(Option<String>, Parameter), BTreeSet<usize>>::new();
+        for group in groups.iter().filter(|group| group.key.2.is_some()) {
+            let lines = directed.entry((group.key.0.clone(), group.key.1)).or_default();
+            lines.extend(group.members.iter().map(|d| d.line));
+        }
         let mut left_out: BTreeMap<(bool, usize, usize), String> =
             self.layout.left_out_rows.iter().map(|(line, t)| ((true, *line, 0), t.clone())).collect();
         let mut out: Vec<(Option<String>, ResultValue)> = Vec::new();
@@ -64,7 +68,10 @@ impl<'t> Table<'t, '_> {
         let (mut states, mut unread, mut zeros) = (States::new(), Vec::new(), Vec::new());
         for mut group in groups {
             zeros.extend(group.leave_out_zeros(self.context.path));
-            let beside = group.key.2.is_none() && both.contains(&(group.key.0.clone(), group.key.1));
+            // A mean beside values of directions, or a row of means below them, sums these up; a row of its own is a value.
+            let lines = directed.get(&(group.key.0.clone(), group.key.1)).filter(|_| group.key.2.is_none());
+            let beside =
+                lines.is_some_and(|lines| group.members.iter().any(|d| d.by_row || lines.contains(&d.line)));
             let fabric = group.key.0.clone();
             match self.value_of(group, beside, &mut left_out, &mut repeated, (&mut states, &mut unread)) {
                 Ok(value) => out.extend(value),
@@ -291,7 +298,7 @@ impl Group {
 
 impl Datum {
     /// Whether its column, and not its row, says that it is a mean.
-    fn is_mean_of_column(&self) -> bool {
+    pub(super) fn is_mean_of_column(&self) -> bool {
         !self.by_row && self.statistic.as_ref().is_some_and(|(statistic, ..)| *statistic == Statistic::Mean)
     }
 

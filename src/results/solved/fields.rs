@@ -152,7 +152,7 @@ impl Mesh {
             nodes: &self.nodes,
             quads: &self.quads,
             values,
-            profile_along: "x of the flat sheet, middle line".into(),
+            profile_along: "x at rest, middle line".into(),
             profile,
             notes: (warning.into_iter())
                 .chain(bands.map(|(band, value)| format!("{band}: {largest} {value}")))
