@@ -171,7 +171,7 @@ pub(super) fn write_charts(
     report(result).write_charts(task, warning, folder)
 }
 
-/// A line of a table, with what its direction, which stands first, rests on behind the name of the fabric.
+/// A line of a table, with a mark behind its direction, which stands first, of what the test rests on.
 fn marked(mut line: Vec<String>, task: &Task, result: &BendingResult) -> Vec<String> {
     let direction = Direction::ALL.into_iter().find(|d| line.first().is_some_and(|first| first == d.name()));
     if let (Some(direction), Some(first)) = (direction, line.first_mut()) {
