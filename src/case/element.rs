@@ -200,12 +200,6 @@ impl ElementTable {
             let message = "the [element] profile `fourth_order` is derived for small rotations: remove it";
             return refused(at.value_place("profile"), message);
         }
-        if self.subcells.is_some() {
-            return refused(
-                at.key_place("subcells"),
-                "`subcells` are those of another bending than that of the [element] profile \"fourth_order\": remove one of them",
-            );
-        }
         if self.shear_stabilisation.is_some() {
             return refused(
                 at.key_place("shear_stabilisation"),
