@@ -166,7 +166,8 @@ macro_rules! readers {
 fn readers(document: &Value) -> Option<[Again; 2]> {
     Some(match document["schema"].as_str()? {
         "kesf.check/1" => readers!(CheckDocument),
-        "kesf.comparison/1" => readers!(ComparisonDocument),
+        // Their files have findings and failures too.
+        "kesf.comparison/1" => [again::<Complete<ComparisonDocument>>; 2],
         "kesf.curves/1" => readers!(CurvesDocument),
         "kesf.drape-image/1" => readers!(DrapeDocument),
         "kesf.explanations/1" => readers!(ExplanationsDocument),
@@ -179,7 +180,7 @@ fn readers(document: &Value) -> Option<[Again; 2]> {
         "kesf.results/1" => readers!(ResultsDocument),
         "kesf.section/1" => readers!(SectionDocument),
         "kesf.sheet/1" => [again::<SheetDocument>, again::<WithFailures<SheetDocument>>],
-        "kesf.solution/1" => readers!(SolutionDocument),
+        "kesf.solution/1" => [again::<Complete<SolutionDocument>>; 2],
         "kesf.verify/1" => readers!(kesf::verify::VerifyDocument),
         "kesf.found/1" | "kesf.manifest/1" | "kesf.merged/1" | "kesf.run/1" => return None,
         other => panic!("no reader of {other}"),
