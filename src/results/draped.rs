@@ -13,6 +13,7 @@ use super::rests_on::{self, Ground};
 use super::sampled::{self, SamplingEntry};
 use super::solved::{ModelEntry, mesh_fields, resultants};
 use super::task::Task;
+use crate::constitutive::MeasuredInput;
 use crate::fields::warp_directions;
 use crate::finding::Finding;
 use crate::law::Mode;
@@ -57,7 +58,7 @@ pub(super) fn table<'a, 'f: 'a, 'c: 'a>(
             d.case.clone(),
             task.shown_fabric(),
             law(task).into(),
-            percent(s.coefficient) + &rests_on::mark(&grounds(task)),
+            percent(s.coefficient) + &rests_on::mark(&grounds(task, &rests_on::known(task))),
             format!("{} to {}", percent(low), percent(high)),
             measured(task).map_or("-".into(), |(m, _)| percent(m)),
             s.folds.count.to_string(),
@@ -233,13 +234,12 @@ pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
         results: DrapeResults { drape },
         findings: d.findings.clone(),
         origin: task.origin_name(),
-        rests_on: grounds(task),
+        rests_on: grounds(task, &rests_on::known(task)),
     }
 }
 
 /// What the shape of a drape rests on that is not to be relied on.
-pub(super) fn grounds(task: &Task) -> Vec<Ground> {
-    let inputs = &rests_on::known(task);
+pub(super) fn grounds(task: &Task, inputs: &[MeasuredInput]) -> Vec<Ground> {
     let friction: &[&str] = if task.case.law() == Mode::Elastic { &[] } else { &["2HB", "2HG"] };
     rests_on::of_symbols(inputs, &[&["E", "G", "B", "W"], friction].concat())
 }
@@ -310,7 +310,7 @@ pub(super) fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
         simulated_half_width: None,
         simulated_band: Some(d.band().map(|b| 100.0 * b)),
         is_closed_loop: false,
-        status: rests_on::status(&grounds(task)),
+        status: rests_on::status(&grounds(task, &rests_on::known(task))),
     };
     Some(DrapePoint { law: task.case.law(), point })
 }
@@ -450,7 +450,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         outline: &d.outline,
         measured: measured(task).map(|(coefficient, _)| coefficient),
         values,
-        remarks: (rests_on::warning(&grounds(task)).into_iter())
+        remarks: (rests_on::warning(&grounds(task, &rests_on::known(task))).into_iter())
             .chain(d.findings.iter().map(|f| f.message()))
             .collect(),
     }

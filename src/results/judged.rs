@@ -46,7 +46,7 @@ fn grounds_of(task: &Task, outcome: &Outcome, inputs: &[MeasuredInput], quantity
     match outcome {
         Outcome::Solved(result) => solved::grounds(result, inputs, quantity),
         Outcome::Bent(result, _) => rests_on::grounds(inputs, &bent::shown_most(result, quantity)),
-        Outcome::Draped(_) => draped::grounds(task),
+        Outcome::Draped(_) => draped::grounds(task, inputs),
         Outcome::Tested(_) => rests_on::grounds(inputs, quantity),
     }
 }

@@ -207,7 +207,7 @@ impl Outcome {
     fn grounds(&self, task: &Task) -> Vec<Ground> {
         match self {
             Self::Solved(result) => solved::all_grounds(task, result),
-            Self::Draped(_) => draped::grounds(task),
+            Self::Draped(_) => draped::grounds(task, &rests_on::known(task)),
             Self::Tested(tested) => rests_on::each_once(tested.iter().flat_map(|t| t.grounds.clone())),
             Self::Bent(result, _) => bent::all_grounds(task, result),
         }

@@ -27,6 +27,8 @@ pub struct Task<'f, 'c> {
     shared: Arc<Shared<'c>>,
     /// A section that the caller brings, instead of the one that the case would make.
     given: Option<Arc<Constitutive>>,
+    /// What is made of the sheet of its fabric, by the first that asks.
+    made: Arc<OnceLock<Result<Constitutive, Failure>>>,
     /// Its bands, once they are sampled.
     sampling: Arc<OnceLock<Option<Sampling>>>,
 }
@@ -97,7 +99,7 @@ impl<'f, 'c> Task<'f, 'c> {
         let path = fabric.map(|f| f.path.as_path());
         let given = fabric.and_then(|f| f.section.as_deref()).map(|made| Arc::new(made.clone()));
         let fabric = fabric.map(|f| &f.sheet);
-        Self { case, fabric, path, shared, given, sampling: Arc::default() }
+        Self { case, fabric, path, shared, given, made: Arc::default(), sampling: Arc::default() }
     }
 
     /// A task that shares nothing with others: a case with a fabric of the caller's choice, whatever fabric the case
@@ -193,7 +195,8 @@ impl Task<'_, '_> {
                 } else {
                     constitutive::section_without_mass
                 };
-                let made = of_sheet(sheet, &self.assumptions())?;
+                let make = || Ok(of_sheet(sheet, &self.assumptions())?);
+                let made = self.made.get_or_init(make).clone()?;
                 Ok((made.section.clone(), Some(made)))
             }
             (None, Some(table)) => {

@@ -1,5 +1,8 @@
 use super::*;
+use nalgebra::{Matrix2, Matrix3};
+
 use crate::characterise::Key;
+use crate::constitutive::{Constitutive, Provenance, Used};
 use crate::finding::EvaluationFact;
 use crate::finding::Place;
 use crate::instrument::Source;

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use super::report::{BendingReport, mm, or_dash, quantity, row, title};
-use super::strip::{ProfileEntry, millimetres};
+use super::strip::{ProfileEntry, millimetres, warning};
 use crate::instrument::Direction;
 use crate::quantity::{Curve, significant};
 use crate::report::chart::{self, ProfileLine, ProfilePlot};
@@ -22,13 +22,8 @@ impl BendingReport for Vec<Cantilever> {
         self.iter().flat_map(|c| cantilever_rows(task, c)).collect()
     }
 
-    fn write_charts(
-        &self,
-        task: &Task,
-        warning: Option<String>,
-        folder: &Folder,
-    ) -> Result<Vec<String>, Failure> {
-        let chart = folder.chart(&task.stem(), || chart::profile(&plot(task, self, warning)))?;
+    fn write_charts(&self, task: &Task, folder: &Folder) -> Result<Vec<String>, Failure> {
+        let chart = folder.chart(&task.stem(), || chart::profile(&plot(task, self)))?;
         Ok(chart.into_iter().collect())
     }
 
@@ -51,12 +46,15 @@ impl BendingReport for Vec<Cantilever> {
     }
 
     fn note(&self) -> Option<&'static str> {
-        let has_friction = self.iter().any(|c| c.friction.is_some());
-        has_friction.then_some(
+        has_friction(self).then_some(
             "a measured bending length is to be compared with `c friction`: cloth rubs while it bends down; `c elastic` is that \
              of B alone",
         )
     }
+}
+
+fn has_friction(tests: &[Cantilever]) -> bool {
+    tests.iter().any(|c| c.friction.is_some())
 }
 
 /// The measured bending length (m) in the direction of a cantilever.
@@ -90,7 +88,7 @@ fn line(task: &Task, c: &Cantilever) -> Vec<String> {
     ]
 }
 
-fn plot(task: &Task, tests: &[Cantilever], warning: Option<String>) -> ProfilePlot {
+fn plot(task: &Task, tests: &[Cantilever]) -> ProfilePlot {
     ProfilePlot {
         title: title(task),
         kind: ", cantilever".into(),
@@ -101,7 +99,7 @@ fn plot(task: &Task, tests: &[Cantilever], warning: Option<String>) -> ProfilePl
         lines: tests.iter().flat_map(|c| drawn(task, c)).collect(),
         chord_angle_deg: Some(CHORD_ANGLE_DEG),
         mirrored: false,
-        remarks: warning.into_iter().chain(remarks(tests)).collect(),
+        remarks: warning(task, has_friction(tests)).into_iter().chain(remarks(tests)).collect(),
     }
 }
 
@@ -138,7 +136,7 @@ fn remarks(tests: &[Cantilever]) -> Vec<String> {
         significant(100.0 * peirce)
     )];
     remarks.push("The faces are averaged: either may be up.".into());
-    if tests.iter().any(|c| c.friction.is_some()) {
+    if has_friction(tests) {
         remarks.push("Friction: first loading by the law of bending, from loops or from B and 2HB.".into());
     }
     remarks

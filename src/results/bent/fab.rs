@@ -21,7 +21,7 @@ impl BendingReport for Vec<BendLoops> {
     }
 
     /// One chart a direction, `<stem>_<direction>`.
-    fn write_charts(&self, task: &Task, _: Option<String>, folder: &Folder) -> Result<Vec<String>, Failure> {
+    fn write_charts(&self, task: &Task, folder: &Folder) -> Result<Vec<String>, Failure> {
         let mut drawn = Vec::new();
         for loops in self {
             let stem = format!("{}_{}", task.stem(), loops.direction);

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use super::report::{BendingReport, micro, mm, or_dash, quantity, row, title};
-use super::strip::{ProfileEntry, millimetres};
+use super::strip::{ProfileEntry, millimetres, warning};
 use crate::report::chart::{self, ProfileLine, ProfilePlot};
 use crate::report::table::PredictionRow;
 use crate::results::failure::Failure;
@@ -23,13 +23,8 @@ impl BendingReport for Vec<HeartLoop> {
         self.iter().map(row).collect()
     }
 
-    fn write_charts(
-        &self,
-        task: &Task,
-        warning: Option<String>,
-        folder: &Folder,
-    ) -> Result<Vec<String>, Failure> {
-        let chart = folder.chart(&task.stem(), || chart::profile(&plot(task, self, warning)))?;
+    fn write_charts(&self, task: &Task, folder: &Folder) -> Result<Vec<String>, Failure> {
+        let chart = folder.chart(&task.stem(), || chart::profile(&plot(task, self)))?;
         Ok(chart.into_iter().collect())
     }
 
@@ -54,7 +49,7 @@ fn line(task: &Task, h: &HeartLoop) -> Vec<String> {
     ]
 }
 
-fn plot(task: &Task, tests: &[HeartLoop], warning: Option<String>) -> ProfilePlot {
+fn plot(task: &Task, tests: &[HeartLoop]) -> ProfilePlot {
     let elastic = "Elastic; the halves may pass through each other where cloth would touch.";
     ProfilePlot {
         title: title(task),
@@ -64,7 +59,7 @@ fn plot(task: &Task, tests: &[HeartLoop], warning: Option<String>) -> ProfilePlo
         lines: tests.iter().map(|h| drawn(task, h)).collect(),
         chord_angle_deg: None,
         mirrored: true,
-        remarks: warning.into_iter().chain([elastic.to_string()]).collect(),
+        remarks: warning(task, false).into_iter().chain([elastic.to_string()]).collect(),
     }
 }
 

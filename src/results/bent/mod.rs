@@ -167,8 +167,7 @@ pub(super) fn write_charts(
     result: &BendingResult,
     folder: &Folder,
 ) -> Result<Vec<String>, Failure> {
-    let warning = rests_on::warning(&all_grounds(task, result));
-    report(result).write_charts(task, warning, folder)
+    report(result).write_charts(task, folder)
 }
 
 /// A line of a table, with a mark behind its direction, which stands first, of what the test rests on.

@@ -12,13 +12,8 @@ pub(super) trait BendingReport {
     /// Rows of `predictions.csv`.
     fn rows(&self, task: &Task) -> Vec<PredictionRow>;
 
-    /// Writes the charts, with what speaks against their inputs; the names of those that there are.
-    fn write_charts(
-        &self,
-        task: &Task,
-        warning: Option<String>,
-        folder: &Folder,
-    ) -> Result<Vec<String>, Failure>;
+    /// Writes the charts; the names of those that there are.
+    fn write_charts(&self, task: &Task, folder: &Folder) -> Result<Vec<String>, Failure>;
 
     /// Headings of the table of a terminal.
     fn headings(&self) -> &'static [&'static str];

@@ -6,6 +6,14 @@ use serde::{Deserialize, Serialize};
 
 use super::report::mm;
 use crate::quantity::Curve;
+use crate::results::rests_on::{self, OF_STRIP, OF_STRIP_WITH_FRICTION};
+use crate::results::task::Task;
+
+/// What a chart says of what the strips of a fabric rest on that is not to be relied on.
+pub(super) fn warning(task: &Task, has_friction: bool) -> Option<String> {
+    let strip = if has_friction { OF_STRIP_WITH_FRICTION } else { OF_STRIP };
+    rests_on::warning(&rests_on::grounds(&rests_on::known(task), strip))
+}
 
 /// The middle line of a strip.
 #[derive(Clone, Debug, Serialize, Deserialize)]
