@@ -80,7 +80,11 @@ pub fn read(bytes: &[u8]) -> Result<Option<ReadDocument>, DocumentError> {
             let open: Open = serde_json::from_slice(bytes)?;
             let sheets = open.sheet.fabrics.into_iter().map(sheet);
             let sections = sections(open.section)?;
-            let read = sheets.zip(sections).map(|(sheet, section)| Ok((sheet?, section.1)));
+            let read = sheets.zip(sections).map(|(sheet, (stated, made))| {
+                let mut sheet = sheet?;
+                sheet.info.origin = stated.info.origin;
+                Ok((sheet, made))
+            });
             Ok(Some(ReadDocument::Sections(read.collect::<Result<_, DocumentError>>()?)))
         }
         // Every program writes U3M: ours has the section in its own corner.
@@ -258,11 +262,10 @@ fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentE
         let changed = SectionFact::Changed { fabric: entry.fabric.clone() };
         Constitutive { used, findings: vec![Finding::new(changed)], ..stated }
     };
-    let sheet = FabricSheet {
-        info: info(entry.fabric.clone(), entry.origin),
-        name: entry.fabric,
-        ..Default::default()
-    };
+    // What somebody typed is no measurement.
+    let origin = if is_as_made { entry.origin } else { Origin::Synthetic };
+    let sheet =
+        FabricSheet { info: info(entry.fabric.clone(), origin), name: entry.fabric, ..Default::default() };
     Ok((sheet, made))
 }
 
@@ -377,7 +380,8 @@ mod tests {
             *changed.pointer_mut(pointer).unwrap() = value.into();
             let read = super::read(changed.to_string().as_bytes()).unwrap();
             let Some(ReadDocument::Sections(read)) = read else { panic!("no sections") };
-            let made = &read[0].1;
+            let (sheet, made) = &read[0];
+            assert_eq!(sheet.info.origin, Origin::Synthetic, "{pointer}");
             assert!(made.inputs.is_empty() && made.findings[0].code() == "C025", "{pointer}: {made:?}");
             assert!(made.used.iter().all(|used| used.provenance == Provenance::Stated), "{pointer}");
         }

@@ -127,7 +127,7 @@ super::facts! {
         "C025" Changed {
             /// Name of the fabric.
             fabric: String,
-        } = "{fabric}: the document was changed since it was written: its numbers are stated, and its inputs and bands, which are of others, are left out";
+        } = "{fabric}: the document was changed since it was written: its numbers are stated and count as synthetic data, and its inputs and bands, which are of others, are left out";
         /// No hysteresis of bending.
         "C017" NoHysteresis {
             /// Name of the fabric.
