@@ -125,8 +125,11 @@ impl FabricReport {
                 // Every case needs the section: one line, not one for each of them.
                 let failure = Failure::of_fabric(error, &sheet.name).at(Place::file(&fabric.path));
                 report.failures.push(failure);
-                // A case may state what the fabric lacks.
+                // A case may state what the fabric lacks, or need none of it; what stands in there is told as elsewhere.
                 let able: Vec<Task> = tasks.iter().filter(|task| task.has_its_section()).cloned().collect();
+                let mut sections = able.iter().filter(|task| task.case.needs_section()).map(Task::section);
+                let made = sections.find_map(Result::ok).and_then(|(_, made)| made);
+                report.findings.extend(made.map_or_else(Vec::new, |made| made.findings));
                 report.simulate(sheet, &able, folder, observer);
             }
         }

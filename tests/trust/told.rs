@@ -98,3 +98,25 @@ fn a_fabric_of_which_nothing_can_be_read_has_a_row_everywhere() {
     let [line] = lines_with(&checked, "broken")[..] else { panic!("{checked}") };
     assert!(line.contains("fabric") && line.split_whitespace().last().unwrap().starts_with('R'), "{checked}");
 }
+
+/// A fabric without an areal density has no section of its own, and simulated tests all the same: what stands in there is told.
+#[test]
+fn what_stands_in_is_told_of_a_fabric_without_an_areal_density() {
+    let folder = tempfile::tempdir().unwrap();
+    let (fabric, out) = (folder.path().join("light"), folder.path().join("out"));
+    fs::create_dir(&fabric).unwrap();
+    fs::write(fabric.join("t.csv"), "parameter,direction,mean,sd,n,unit\nB,warp,0.08,0.005,5,gf·cm²/cm\n")
+        .unwrap();
+    let [fabric, to] = [&fabric, &out].map(|path| path.to_str().unwrap());
+    run(&["run", "--no-charts", fabric, "cases/virtual_bending.toml", "-o", to]);
+    let codes: std::collections::BTreeSet<String> =
+        rows(&out.join("problems.csv")).iter().map(|row| row["code"].clone()).collect();
+    for code in ["C004", "C010", "C012", "C013"] {
+        assert!(codes.contains(code), "{code}: {codes:?}");
+    }
+    let predictions = rows(&out.join("predictions.csv"));
+    let of = |quantity: &str| predictions.iter().find(|row| row["quantity"] == quantity).unwrap();
+    assert_eq!((of("B warp")["inputs"].as_str(), of("B weft")["inputs"].as_str()), ("measured", "assumed"));
+    assert_ne!(of("B warp")["simulated_low"], "");
+    assert_eq!(of("B weft")["simulated_low"], "", "the weft has none of the repeats of the warp");
+}
