@@ -226,7 +226,7 @@ problems! {
         /// Why.
         found: String,
     } = "{found}",
-        "a result table has the symbols (B, 2HB, G ...) in its header row, or one row per symbol with columns parameter, value, unit";
+        "correct that place; a result table has the symbols (B, 2HB, G ...) in its header row, or one row per symbol with columns parameter, value, unit, and each value once";
     /// `fabric.toml` is wrong.
     "R019" BadFabricFile {
         /// The parser's words.

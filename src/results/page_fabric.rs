@@ -2,6 +2,7 @@
 
 use super::fabric::FabricReport;
 use super::failure::Failure;
+use super::page_predictions::others;
 use super::page_section::PageSection;
 use super::page_values::tests;
 use crate::finding::{Fact, Finding, StudyFact};
@@ -21,6 +22,7 @@ pub(super) fn fabric_block(place: usize, report: &FabricReport) -> Block {
     blocks.extend(facts(report));
     blocks.extend(values(report));
     blocks.extend(tests(report));
+    blocks.extend(others(report));
     blocks.extend(report.section.as_ref().map(PageSection::block));
     let (drawn, pictures): (Vec<Figure>, Vec<Figure>) =
         report.figures.iter().cloned().partition(|figure| is_drawn(report, figure));

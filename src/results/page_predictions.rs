@@ -1,9 +1,10 @@
 //! Predictions of cases on the page: what a laboratory measures first, plates in a form without units after it.
 
 use super::fabric::FabricReport;
+use super::page_values::is_of_test;
 use crate::quantity::significant;
 use crate::report::html::{Block, TableCell};
-use crate::report::number::counted;
+use crate::report::number::{counted, unit_text};
 use crate::report::table::PredictionRow;
 
 /// Deflection over the bending thickness below which a linear solve is meaningful.
@@ -212,6 +213,44 @@ fn plates_caption(reports: &[FabricReport], cases: &[&str]) -> String {
     caption
 }
 
+/// What the other tables have no place for: vibrations, buckling, motions, steps, and sheets in their plane.
+pub(super) fn others(report: &FabricReport) -> Option<Block> {
+    let is_plate =
+        |row: &PredictionRow| report.relative_deflections.iter().any(|(case, _)| *case == row.case);
+    let is_led = |row: &PredictionRow| report.predictions.iter().any(|r| is_leading(r) && r.case == row.case);
+    let is_other = |row: &&PredictionRow| !is_of_test(row) && !is_plate(row) && !is_led(row);
+    let rows: Vec<Vec<TableCell>> = report.predictions.iter().filter(is_other).map(other_row).collect();
+    (!rows.is_empty()).then(|| Block::Table {
+        caption: "Other predictions: vibrations, buckling, motions, steps, and sheets in their plane.".into(),
+        header: ["quantity", "simulated", "95 % band", "measured", "unit", "case", "remark"]
+            .map(String::from)
+            .to_vec(),
+        rows,
+        of_fabrics: false,
+    })
+}
+
+fn other_row(row: &PredictionRow) -> Vec<TableCell> {
+    let (unit, factor) = match row.unit.as_str() {
+        "m" => ("mm", 1e3),
+        "1/s" => ("Hz", 1.0),
+        unit => (unit, 1.0),
+    };
+    let text = |value: Option<f64>| value.map_or("-".into(), |v| significant(factor * v));
+    let band = row.simulated_low.zip(row.simulated_high);
+    [
+        row.quantity.clone(),
+        text(row.simulated),
+        band.map_or("-".into(), |(low, high)| format!("{} to {}", text(Some(low)), text(Some(high)))),
+        text(row.measured),
+        unit_text(unit),
+        row.case.clone(),
+        row.remark.clone().unwrap_or_default(),
+    ]
+    .map(TableCell::from)
+    .to_vec()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -308,6 +347,37 @@ mod tests {
         let report = FabricReport { predictions, ..FabricReport::default() };
         let (caption, header, _) = table(leading(&[report]).into_iter().next());
         assert!(!caption.contains("drape") && !header.concat().contains("drape"), "{caption}");
+    }
+
+    #[test]
+    fn what_no_other_table_has_is_listed() {
+        let frequency = PredictionRow { unit: "1/s".into(), ..row("modes", "frequency_1", 4.25, None) };
+        let stretched = PredictionRow {
+            simulated_low: Some(1e-3),
+            simulated_high: Some(3e-3),
+            unit: "m".into(),
+            remark: Some("rests on an assumed W".into()),
+            ..row("pull", "in_plane_max", 2e-3, None)
+        };
+        let report = FabricReport {
+            relative_deflections: vec![("own".into(), 3.0)],
+            predictions: vec![
+                row("own", "w_max", 1e-3, None),
+                row("drape", "drape_coefficient", 0.6, None),
+                row("drape", "drape_nodes", 7.0, None),
+                row("virtual_bending", "B warp", 9.8e-6, None),
+                frequency,
+                stretched,
+            ],
+            ..FabricReport::default()
+        };
+        let (_, _, rows) = table(others(&report));
+        let expected = [
+            ["frequency_1", "4.250", "-", "-", "Hz", "modes", ""],
+            ["in_plane_max", "2.000", "1.000 to 3.000", "-", "mm", "pull", "rests on an assumed W"],
+        ];
+        assert_eq!(rows, expected.map(|line| line.map(TableCell::from).to_vec()));
+        assert_eq!(others(&FabricReport::default()), None);
     }
 
     /// That a linear solve is beyond its meaning is said once; what speaks against one fabric stands beside its value.

@@ -8,7 +8,7 @@ use crate::report::number::{self, concise, unit_text};
 use crate::report::table::{FabricRow, PredictionRow, UnitSystem};
 
 /// Whether the row is of a simulated KES test.
-fn is_of_test(row: &PredictionRow) -> bool {
+pub(super) fn is_of_test(row: &PredictionRow) -> bool {
     symbol(row).is_some()
 }
 

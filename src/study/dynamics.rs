@@ -10,6 +10,7 @@ use super::load_path::MotionFrame;
 use super::nonlinear::largest_w;
 use super::of_fabric::OfFabric;
 use super::result::Outcome;
+use super::steps_a_period::{LENGTHENING, StepsAPeriod};
 use super::{Case, PreparedCase, StudyError, Watch, refused, through_itself};
 use crate::case::Rotations;
 use crate::element::Mass;
@@ -72,6 +73,7 @@ pub(super) struct Record<'a> {
     history: History,
     solution: Solution,
     watch: Watch<'a>,
+    steps: StepsAPeriod,
     /// What the motion may take (s), once it has taken more.
     over: Option<f64>,
     /// Time between shapes that are kept (s), where some are.
@@ -95,6 +97,7 @@ impl Record<'_> {
         history.displacement_max =
             history.displacement_max.max(largest_displacement(self.mesh, at.displacement));
         self.solution.displacement.copy_from_slice(at.displacement);
+        self.steps.see(at.time, at.displacement);
         // The first instant from each time on; rounding of the sum of steps is no delay.
         let due = self.every.map(|every| every * (1.0 - 1e-9) * (self.frames.len() + 1) as f64);
         if due.is_some_and(|due| at.time >= due) {
@@ -110,6 +113,12 @@ impl Record<'_> {
 fn unbalanced(case: &Case, imbalance: f64, given: f64) -> Option<Finding> {
     (imbalance.max(given) > IMBALANCE_LIMIT)
         .then(|| Finding::new(StudyFact::Unbalanced { imbalance, given }).at(Place::file(&case.path)))
+}
+
+/// The finding of steps that are too long for the motion that they make.
+fn coarse(case: &Case, steps: &StepsAPeriod) -> Option<Finding> {
+    let (steps, lengthening) = steps.found().filter(|(_, longer)| *longer > LENGTHENING)?;
+    Some(Finding::new(StudyFact::CoarseMotion { steps, lengthening }).at(Place::file(&case.path)))
 }
 
 /// Whether a finding says that a motion was not computed to its end.
@@ -166,6 +175,7 @@ impl<'a> Record<'a> {
             },
             solution: Solution { dofs: prepared.plan.rows(model), ..Solution::at_rest(model) },
             watch,
+            steps: StepsAPeriod::default(),
             over: None,
             every: None,
             frames: Vec::new(),
@@ -184,7 +194,7 @@ impl<'a> Record<'a> {
         if self.history.time.last().is_some_and(|time| *time < (1.0 - 1e-6) * duration) {
             self.over = self.over.or_else(platform::over);
         }
-        let Self { mut history, solution, over, .. } = self;
+        let Self { mut history, solution, steps, over, .. } = self;
         // What it began with is no work of the motion.
         let began = history.energy.first().map_or(0.0, |e| e.strain.min(e.work));
         let sizes = history
@@ -199,6 +209,7 @@ impl<'a> Record<'a> {
         let gained = history.energy.iter().map(|e| e.imbalance() / work).fold(0.0, f64::max);
         let missed = if damps { gained } else { history.imbalance };
         let mut findings: Vec<Finding> = unbalanced(case, missed, given).into_iter().collect();
+        findings.extend(coarse(case, &steps));
         let reached = history.time.last().copied().unwrap_or_default();
         if let Some(seconds) = over.filter(|_| reached < duration) {
             let fact = StudyFact::OutOfTime { seconds, reached, duration };

@@ -27,6 +27,7 @@ mod reading;
 mod result;
 mod run;
 mod sampling;
+mod steps_a_period;
 mod uncertainty;
 mod virtual_large;
 mod virtual_loop;

@@ -170,6 +170,14 @@ super::facts! {
             given: f64,
         } = "{}: take a shorter step (with a tolerance, a smaller one), a load that ramps instead of a jump, and forces for a \
              moment about the normal, where the sheet has no mass", energies(*imbalance, *given);
+        /// A motion in steps that are long for it.
+        "S164" CoarseMotion {
+            /// Steps a period of what moves most.
+            steps: f64,
+            /// The part of itself that a period of so few is lengthened by.
+            lengthening: f64,
+        } = "the motion has {steps:.1} steps a period, which lengthen it by {:.0} %, and what is faster is lost: take a shorter step, \
+             or a tolerance", 100.0 * lengthening;
         /// An unstable equilibrium.
         "S111" Unstable {
             /// Directions in which its energy falls.
