@@ -24,7 +24,10 @@ pub struct SimulateArgs {
 pub fn simulate(kind: BatchKind, inputs: &[PathBuf], args: &SimulateArgs, ui: &Ui) -> Result<Exit, Failure> {
     let idle = args.task.about_folder();
     if args.output.is_none() && !idle.is_empty() {
-        ui.note(&format!("{}: without effect, as no folder is written; -o FOLDER names one", idle.join(", ")));
+        ui.note(&format!(
+            "{}: without effect, as no folder is written; -o FOLDER names one",
+            idle.join(", ")
+        ));
     }
     let job = args.task.job(inputs, ui)?;
     let mut work = ui.observe(|observer| job.read(observer))?;
