@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use kesf::constitutive::{Assumptions, section};
 use kesf::finding::Place;
+use kesf::law::Mode;
 use kesf::report::cards::{EXPORTERS, named};
 use kesf::report::json::{section_document, text};
 use kesf::report::read_back::{self, ReadDocument};
@@ -64,13 +65,18 @@ impl Section {
 
 /// The choices of a JSON object with the keys of `[assumptions]` of a case.
 fn assumed(text: &str) -> Result<Assumptions, Failure> {
-    serde_json::from_str(text).map_err(|error| {
+    let assumptions: Assumptions = serde_json::from_str(text).map_err(|error| {
         // What the parser says of the place is about a text that nobody wrote.
         let text = error.to_string();
         let reason = text.split(" at line ").next().unwrap_or_default();
         Failure::new("O050", format!("the assumptions cannot be used: {reason}"))
             .hint("the keys and choices are those of [assumptions] in a case")
-    })
+    })?;
+    if assumptions.law == Mode::Elastic && assumptions.residual_curvature.is_some() {
+        return Err(Failure::new("O050", "residual_curvature belongs to friction".to_string())
+            .hint("add law=\"friction\", or leave it out"));
+    }
+    Ok(assumptions)
 }
 
 #[pymethods]

@@ -8,7 +8,9 @@ use kesf::constitutive::Constitutive;
 use kesf::fields::Resultants;
 use kesf::finding::{Finding, Place};
 use kesf::report::table::{HistoryRow, PredictionRow, history_rows};
-use kesf::results::{Event, Fabric, Failure, Input, Job, Observer, Outcome, Task, simulate as solve};
+use kesf::results::{
+    Event, Fabric, Failure, Input, Job, Observer, Outcome, Task, simulate as solve, unsuitable,
+};
 use kesf::study::{CaseResult, Drape, StudyError};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -118,7 +120,10 @@ fn given(case: &Case, cloth: &Cloth) -> Result<(Arc<Fabric>, Option<Constitutive
                 Some(assumptions) => sheet.with_modulus(assumptions.modulus)?,
                 None => Arc::clone(sheet.fabric()),
             };
-            Ok((fabric, None))
+            match unsuitable(case, &fabric.sheet) {
+                Some(failure) => Err(failure),
+                None => Ok((fabric, None)),
+            }
         }
         Cloth::Section(section) => {
             let sectioned = section.get().sectioned();
@@ -146,16 +151,24 @@ fn with_own(case: Case, threads: usize, observer: &Observer<'_>) -> Result<Simul
     let moduli: Vec<_> = case.assumptions().map(|a| a.modulus).into_iter().collect();
     let (fabrics, failures) =
         job.reading.sheets(&job.inputs, &moduli, kesf::results::Curves::Kept, observer)?;
-    match (fabrics.first(), failures.into_iter().next()) {
-        (Some(fabric), _) => one(&Task::alone(&case, Some(fabric), threads), observer),
-        (None, Some(failure)) => Err(failure),
-        (None, None) => Err(kesf::results::nothing_to_read()),
+    let Some(fabric) = fabrics.first() else {
+        return Err(failures.into_iter().next().unwrap_or_else(kesf::results::nothing_to_read));
+    };
+    if let Some(failure) = unsuitable(&case, &fabric.sheet) {
+        return Err(failure);
     }
+    let mut simulated = one(&Task::alone(&case, Some(fabric), threads), observer)?;
+    // Files of the fabric that could not be read: the result is of the others.
+    simulated.failures.splice(0..0, failures);
+    Ok(simulated)
 }
 
 fn one(task: &Task<'_, '_>, observer: &Observer<'_>) -> Result<Simulated, Failure> {
     (observer.event)(Event::Started("simulating", task.stages() + 1));
     let outcome = solve(task, observer)?;
+    if let Some(failure) = outcome.nothing(task) {
+        return Err(failure);
+    }
     let mut findings = Vec::new();
     if task.case.needs_section() {
         let (_, made) = task.section()?;

@@ -231,6 +231,9 @@ fn stated_as(section: &SectionEntry, input: &str) -> Option<f64> {
 
 fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentError> {
     let is_as_made = is_as_made(&entry);
+    let laws: Vec<String> = entry.without.iter().map(|law| law.to_string()).collect();
+    let left_out = (!laws.is_empty())
+        .then(|| Finding::new(SectionFact::LawsLeftOut { fabric: entry.fabric.clone(), laws }));
     let section = ShellSection {
         d_m: Matrix3::from_fn(|r, c| entry.d_m[r][c]),
         d_b: Matrix3::from_fn(|r, c| entry.d_b[r][c]),
@@ -250,7 +253,7 @@ fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentE
         used: Vec::new(),
         inputs: Vec::new(),
         surface_friction: None,
-        findings: Vec::new(),
+        findings: left_out.into_iter().collect(),
     };
     let made = if is_as_made {
         let used = entry.assumptions.into_iter().map(used).collect();
@@ -260,7 +263,8 @@ fn section(entry: SectionEntry) -> Result<(FabricSheet, Constitutive), DocumentE
         let name = "matrices, areal density, thickness".into();
         let used = vec![Used { name, value: "as stated".into(), provenance: Provenance::Stated, source }];
         let changed = SectionFact::Changed { fabric: entry.fabric.clone() };
-        Constitutive { used, findings: vec![Finding::new(changed)], ..stated }
+        let findings = std::iter::once(Finding::new(changed)).chain(stated.findings).collect();
+        Constitutive { used, findings, ..stated }
     };
     // What somebody typed is no measurement.
     let origin = if is_as_made { entry.origin } else { Origin::Synthetic };
@@ -303,6 +307,8 @@ mod tests {
     use super::*;
     use crate::constitutive::{Assumptions, entries, section};
     use crate::instrument::MeasuredResult;
+    use crate::law::Mode;
+    use crate::quantity::Curvature;
     use crate::report::json::{sheet_document, text};
 
     fn sheet() -> FabricSheet {
@@ -388,6 +394,24 @@ mod tests {
         document["units"]["d_b"] = "gf·cm²/cm".into();
         let error = super::read(document.to_string().as_bytes()).unwrap_err().to_string();
         assert!(error.contains("d_b in gf·cm²/cm where N·m was expected"), "{error}");
+    }
+
+    /// The document of a document says it again.
+    #[test]
+    fn a_section_without_its_laws_says_so() {
+        let residual_curvature = Some(Curvature(25.0));
+        let friction = Assumptions { law: Mode::Friction, residual_curvature, ..Assumptions::default() };
+        let mut made = section(&sheet(), &friction).unwrap();
+        assert!(made.law.is_some());
+        for _ in 0..2 {
+            let written = text(&section_document([(&sheet(), &made)])).unwrap();
+            let read = super::read(written.as_bytes()).unwrap();
+            let Some(ReadDocument::Sections(read)) = read else { panic!("no sections") };
+            made = read[0].1.clone();
+            let found: Vec<String> = made.findings.iter().map(|f| format!("{} {f}", f.code())).collect();
+            assert!(made.law.is_none() && found.len() == 1, "{found:?}");
+            assert!(found[0].contains("C026") && found[0].contains("(friction)"), "{found:?}");
+        }
     }
 
     #[test]

@@ -94,7 +94,7 @@ pub use solved::{ModelEntry, QuantityEntry, SolutionEntry, SolverEntry, TimingsE
 pub(crate) use task::Shared;
 pub use task::{Limits, Task};
 pub use tested::{Stiffness, TestEntry, Tested};
-pub use work::{Job, Work, named_fabric, no_such_fabric};
+pub use work::{Job, Work, named_fabric, no_such_fabric, unsuitable};
 pub(crate) use work::{JobInputs, is_within, without_fabric, without_fabric_named, without_law};
 
 pub(crate) use draped::{bracket, write_parity as write_drape_parity};

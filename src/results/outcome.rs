@@ -307,7 +307,7 @@ impl Outcome {
     }
 
     /// O055: a test that the fabric has nothing for; in a batch of many fabrics it is left out.
-    pub(super) fn nothing(&self, task: &Task) -> Option<Failure> {
+    pub fn nothing(&self, task: &Task) -> Option<Failure> {
         let Self::Tested(tested) = self else { return None };
         let text = "there is nothing to simulate";
         let hint = "compression takes T0 and Tm of the fabric, T0 the larger of both: add KES-FB3 records, or both to a result table";

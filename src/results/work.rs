@@ -12,6 +12,7 @@ use super::section::fabrics_for_cases;
 use super::shard::Share;
 use super::task::{Limits, Shared, Task};
 use crate::case::{Case, FabricMaterial, SolverChoice};
+use crate::characterise::FabricSheet;
 use crate::finding::{Finding, Place, StudyFact, UsageFact};
 use crate::platform::files;
 
@@ -208,6 +209,13 @@ impl Work {
             format!("not used, as every case names its own fabric or has a [section]: {}", idle.join(", "))
         })
     }
+}
+
+/// O055 of a fabric that has not what the case is about: FAB records, or a law of friction.
+pub fn unsuitable(case: &Case, sheet: &FabricSheet) -> Option<Failure> {
+    let lacks_law = case.lacks_law(sheet);
+    let lacks_records = case.is_for_fab_records() && sheet.bend_tests.is_empty();
+    (lacks_law || lacks_records).then(|| without_fabric(case, lacks_law))
 }
 
 /// O055: no fabric has what a case needs; `lacks_law` of one for which a law of friction is all that is missing.

@@ -4,6 +4,7 @@
 //! central force, w = 0.01160 P a²/D (Timoshenko and Woinowsky-Krieger, *Theory of Plates and Shells*, Table 23).
 
 use kesf::fields::{cells, warp_directions};
+use kesf::finding::{Fact, StudyFact};
 use kesf::model::Load;
 use kesf::solve::{self, Options};
 use kesf::study::{Case, CaseError, CaseResult, StudyError, section, solve_case};
@@ -181,6 +182,31 @@ fn energies_that_do_not_add_up_are_told() {
         findings_under("kind = \"edge_force\"\nset = \"right\"\nvalue = \"1e-9 N/m\"", "[0, 0, 1]")
             .is_empty()
     );
+}
+
+/// The first period of a cantilever of bending stiffness D and mass m a width is 2π L² √(m/D) / 3.516; a step of h of the average
+/// acceleration turns the phase by 2 atan(ω h / 2).
+#[test]
+fn steps_that_are_long_for_a_motion_are_told() {
+    let omega = 3.516 / (0.4 * 0.4);
+    let period = std::f64::consts::TAU / omega;
+    let steps_of = |step: f64| {
+        let rest = format!(
+            "[[supports]]\nset = \"left\"\nkind = \"clamped\"\n[[loads]]\nkind = \"edge_force\"\nset = \"right\"\n\
+             value = \"1e-9 N/m\"\ndirection = [0, 0, 1]\n[analysis]\nkind = \"newmark\"\nduration = \"{} s\"\n\
+             step = \"{step} s\"\n",
+            60.0 * step
+        );
+        let findings = solved(&case(0.0, [0.4, 0.1], [8, 2], &rest)).unwrap().findings;
+        findings.iter().find_map(|finding| match &finding.fact {
+            Fact::Study(StudyFact::CoarseMotion { steps, .. }) => Some(*steps),
+            _ => None,
+        })
+    };
+    let exact = std::f64::consts::PI / (0.5 * omega * period / 6.0).atan();
+    let steps = steps_of(period / 6.0).unwrap();
+    assert!((steps / exact - 1.0).abs() < 0.05, "{steps} {exact}");
+    assert_eq!(steps_of(period / 20.0), None);
 }
 
 /// A strip that is pulled in its plane moves along x, and its history says so.

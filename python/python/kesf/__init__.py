@@ -10,7 +10,7 @@ The engine is the one of the command ``kesf``: the same digits. Everything is SI
 True
 """
 
-from ._errors import Failure, Finding, KesfError
+from ._errors import Failure, Finding, KesfError, KesfWarning
 from ._evaluate import Evaluation, evaluate, find
 from ._fabrics import Batch, Fabric, Measurement
 from ._functions import (
@@ -48,6 +48,7 @@ __all__ = [
     "Failure",
     "Finding",
     "KesfError",
+    "KesfWarning",
     "Measurement",
     "Mesh",
     "Probe",

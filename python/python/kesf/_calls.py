@@ -49,6 +49,9 @@ def sources(inputs: object) -> tuple[list[str], list[tuple[str, bytes]]]:
     paths: list[str] = []
     memory: list[tuple[str, bytes]] = []
     several = not isinstance(inputs, (str, bytes, bytearray, memoryview, os.PathLike, Mapping))
+    # A frame of polars or pandas would be taken for the names of its columns.
+    if several and (hasattr(inputs, "columns") or not isinstance(inputs, Iterable)):
+        raise _nothing_to_read(inputs)
     # A pair of a name and bytes is one file, and no two.
     if isinstance(inputs, tuple) and len(inputs) == 2 and isinstance(inputs[1], (bytes, bytearray, memoryview)):
         several = not isinstance(inputs[0], (str, os.PathLike))
@@ -57,20 +60,36 @@ def sources(inputs: object) -> tuple[list[str], list[tuple[str, bytes]]]:
             paths.append(os.fspath(cast("Path", item)))
         elif isinstance(item, (bytes, bytearray, memoryview)):
             memory.append((BYTES if not memory else f"<bytes {len(memory) + 1}>", bytes(item)))
-        elif isinstance(item, tuple) and len(item) == 2:
+        elif isinstance(item, tuple) and len(item) == 2 and isinstance(item[1], (bytes, bytearray, memoryview)):
             memory.append((str(item[0]), bytes(item[1])))
         else:
-            raise KesfError(
-                f"{type(item).__name__} is nothing to read",
-                cure="give a path, bytes, a pair of a name and bytes, or several of these",
-            )
+            raise _nothing_to_read(item)
     return paths, memory
+
+
+def _nothing_to_read(item: object) -> KesfError:
+    cure = "give a path, bytes, a pair of a name and bytes, or several of these"
+    if hasattr(item, "columns"):
+        cure = "kesf.evaluate takes tables of curves; kesf.read takes files"
+    return KesfError(f"{type(item).__name__} is nothing to read", cure=cure)
+
+
+def json_of(data: object) -> str:
+    """JSON, in which numbers and arrays of numpy are those of Python."""
+
+    def plain(value: object) -> object:
+        as_list = getattr(value, "tolist", None)
+        if as_list is None:
+            raise TypeError(f"{type(value).__name__} is no value of a table")
+        return as_list()
+
+    return json.dumps(data, default=plain, allow_nan=False)
 
 
 def toml(data: Mapping[str, Any], what: str) -> str:
     """Nested mappings as TOML."""
     try:
-        return _kesf.case_text(json.dumps(data))
+        return _kesf.case_text(json_of(data))
     except (TypeError, ValueError) as error:
         raise KesfError(f"{what} cannot be written as TOML: {error}") from error
 
@@ -93,4 +112,13 @@ def case_of(case: CaseLike) -> tuple[str, str | None]:
     """Name of a case, and its text if it is not to be read from a file of that name."""
     if isinstance(case, (bytes, Mapping)):
         return text_of(case, "<case>", "the case")
-    return os.fspath(case), None
+    if not isinstance(case, (str, os.PathLike)):
+        raise KesfError(
+            f"{type(case).__name__} is no case", cure="give a case file, the bytes of one, or its tables as mappings"
+        )
+    path = os.fspath(case)
+    if "\n" in path:
+        raise KesfError(
+            "a case file is expected, and this is a text", cure="give text.encode(), or its tables as a dict"
+        )
+    return path, None

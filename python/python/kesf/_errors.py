@@ -112,6 +112,13 @@ class Finding:
         return f"{place or self.fabric or 'kesf'}: {self.code} {self.message}"
 
 
+class KesfWarning(UserWarning):
+    """Something of an input could not be read, and the result is of the rest.
+
+    ``warnings.simplefilter("error", kesf.KesfWarning)`` makes an exception of it.
+    """
+
+
 @dataclass(frozen=True)
 class Failure(Finding):
     """Why an input or a task of several gave no result; the others went on.

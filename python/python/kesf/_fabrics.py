@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from html import escape
-from typing import Any, Protocol, TypeVar, overload
+from typing import Any, Protocol, TypeVar, get_args, overload
 
 import numpy as np
 
 from . import _kesf
 from ._calls import unit_system
-from ._errors import Failure, Finding, findings_of
+from ._errors import Failure, Finding, KesfError, findings_of
 from ._html import lines
 from ._html import table as html_table
 from ._table import Table
@@ -49,7 +49,7 @@ class Measurement:
             coefficient of friction (1) or height (m).
         x_unit: Unit of ``x``.
         y_unit: Unit of ``y``.
-        conditions: Width (m), gauge (m), maximum and pretension of the test, in SI.
+        conditions: ``width`` and ``gauge`` (m), ``maximum`` and ``pretension`` in ``y_unit``; None where unknown.
         path: The file.
         metadata: Everything else that the header said.
     """
@@ -250,6 +250,9 @@ class Batch(Sequence[Fabric]):
         >>> kesf.read("kesf_data/poplin").curves("bending", units="kes").units["x"]
         '1/cm'
         """
+        for given, known in ((test, get_args(Test)), (direction, get_args(Direction))):
+            if given is not None and given not in known:
+                raise KesfError(f"`{given}` is none of {', '.join(known)}")
         native = [fabric._native for fabric in self._fabrics]
         return Table(_kesf.Fabric.curves(native, unit_system(units), test, direction))
 

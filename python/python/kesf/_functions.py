@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import sys
+import warnings
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple, overload
 
 from . import _kesf
 from ._calls import case_of, follower, sources, text_of
-from ._errors import KesfError, failures_of, findings_of
+from ._errors import KesfError, KesfWarning, failures_of, findings_of
 from ._fabrics import Batch, Fabric
 from ._reports import Comparison, Run, Verification, comparison_of, run_of
 from ._sections import Card, Section, assumptions_of
@@ -146,6 +148,8 @@ def characterise(
 
     Returns:
         A sheet, or the sheets of a batch. What cannot be evaluated is left out and told in the findings of the sheet.
+        Files of a path that cannot be read are left out with a :class:`KesfWarning` each; of a batch they are its
+        ``failures``.
 
     Raises:
         KesfError: if the settings cannot be used, or the path is not that of one fabric.
@@ -158,16 +162,24 @@ def characterise(
     one = isinstance(fabric, (Fabric, str, os.PathLike))
     if isinstance(fabric, (str, os.PathLike)):
         fabric = _only(read(fabric), os.fspath(fabric))
-    several = [fabric] if isinstance(fabric, Fabric) else list(fabric)
+    several = [fabric] if isinstance(fabric, Fabric) else list(fabric) if isinstance(fabric, Iterable) else [fabric]
+    strange = next((each for each in several if not isinstance(each, Fabric)), None)
+    if strange is not None or isinstance(fabric, bytes):
+        what = type(fabric if isinstance(fabric, bytes) else strange).__name__
+        raise KesfError(f"{what} is no fabric", cure="give kesf.read(...), or the path of one fabric")
+    moduli = [moduli] if isinstance(moduli, str) else moduli
     text = None if settings is None else text_of(settings, "<settings>", "the settings")
     native = [f._native for f in several]
     sheets = _kesf.characterise(native, text, list(moduli), threads, follower(progress))
     made = [Sheet(sheet) for sheet in sheets]
-    return made[0] if one else Sheets(made)
+    return made[0] if one else Sheets(made, fabric.failures if isinstance(fabric, Batch) else ())
 
 
 def _only(batch: Batch, path: str) -> Fabric:
     if len(batch) == 1:
+        for failure in batch.failures:
+            text = f"{failure}; what it holds is not in the result"
+            warnings.warn(text, KesfWarning, stacklevel=_outside())
         return batch[0]
     raise KesfError(
         f"there are {len(batch)} fabrics, and one is expected",
@@ -177,8 +189,23 @@ def _only(batch: Batch, path: str) -> Fabric:
     )
 
 
+def _outside() -> int:
+    """How many calls up the first one is that is not of this package: a warning is for its line."""
+    frame, level = sys._getframe(1), 1
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
+        frame, level = frame.f_back, level + 1
+    return level
+
+
 def _sheet(cloth: Sheet | Fabric | Path) -> Sheet:
-    return cloth if isinstance(cloth, Sheet) else characterise(cloth)
+    if isinstance(cloth, (Fabric, str, os.PathLike)):
+        return characterise(cloth)
+    if not isinstance(cloth, Sheet):
+        raise KesfError(
+            f"{type(cloth).__name__} is not one fabric",
+            cure="give a sheet, a fabric, or the path of one; of several, one after the other",
+        )
+    return cloth
 
 
 def section(sheet: Sheet | Fabric | Path, **assumptions: Any) -> Section:

@@ -11,19 +11,22 @@ import numpy as np
 
 from ._data import RawOutcome, Result
 from ._errors import Failure, Finding, failures_of, findings_of
+from ._html import findings as html_findings
 from ._html import lines, number
 from ._html import table as html_table
-from ._table import Table
+from ._table import Table, predictions_html
 from ._types import Floats
 
 
 @dataclass(frozen=True, eq=False)
 class Curve(Result):
-    """A simulated curve beside the measured one, in SI, at the abscissae of the measurement.
+    """A simulated curve beside the measured one, in SI, at the abscissae of the corrected records.
+
+    The branches of all specimens stand one behind the other; :meth:`Sheet.curves` has them apart.
 
     Attributes:
         name: Such as ``bending warp``.
-        x: Abscissae, shape (n,), in the order of the record.
+        x: Abscissae, shape (n,), of each branch in the order of its record.
         simulated: Simulated ordinates, shape (n,).
         measured: Measured ordinates, shape (n,).
         unit: Unit of the ordinates.
@@ -102,9 +105,9 @@ class Comparison(Result):
 
     def _repr_html_(self) -> str:
         header = ("quantity", "simulated", "measured", "unit", "error")
-        rows = [[r[name] for name in header] for r in self.predictions.rows()]
         pictures = [lines([(c.x, c.measured), (c.x, c.simulated)], 160) for c in self.curves]
-        return html_table(header, rows, f"{self.case}, {self.fabric}") + "".join(pictures)
+        told = predictions_html(self.predictions, f"{self.case}, {self.fabric}", header)
+        return told + "".join(pictures) + html_findings(self.findings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,9 +145,8 @@ class Run(Result):
 
     def _repr_html_(self) -> str:
         header = ("fabric", "case", "quantity", "simulated", "measured", "unit", "error")
-        rows = [[r[name] for name in header] for r in self.predictions.rows()]
         failed = html_table(("failed", "code", "why"), [(f.path, f.code, f.message) for f in self.failures])
-        return html_table(header, rows) + (failed if self.failures else "")
+        return predictions_html(self.predictions, "", header) + (failed if self.failures else "")
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from . import _kesf
+from ._calls import json_of
 from ._errors import Finding, KesfError, findings_of
 from ._html import findings as html_findings
 from ._html import table as html_table
@@ -147,15 +148,17 @@ class Section:
         b = f"B {self.d_b[0, 0]:.3g} and {self.d_b[1, 1]:.3g} N·m"
         e = f"D_m {self.d_m[0, 0]:.4g} and {self.d_m[1, 1]:.4g} N/m"
         assumed = sum(a.is_assumed for a in self.assumptions)
-        return f"<kesf.Section {self.name}: {b}, {e}, {assumed} assumptions>"
+        return f"<kesf.Section {self.name}: {b}, {e}, {assumed} assumptions, {self.origin} data>"
 
     def _repr_html_(self) -> str:
         parts = []
         for name, unit, matrix in (("D_m", "N/m", self.d_m), ("D_b", "N·m", self.d_b), ("D_s", "N/m", self.d_s)):
             header = [""] * len(matrix)
             parts.append(html_table(header, matrix.tolist(), f"{name} ({unit})"))
-        rows = [(a.name, a.value, a.source) for a in self.assumptions]
-        return "".join(parts) + html_table(("input", "value", "source"), rows, self.name)
+        rows = [(a.name, a.value, a.provenance, a.source) for a in self.assumptions]
+        caption = f"{self.name}, {self.origin} data"
+        table = html_table(("input", "value", "provenance", "source"), rows, caption)
+        return "".join(parts) + table + html_findings(self.findings)
 
 
 def _section(version: str, packed: bytes) -> Section:
@@ -195,6 +198,6 @@ class Card:
 def assumptions_of(given: Mapping[str, Any]) -> str:
     """Assumptions as JSON."""
     try:
-        return json.dumps({name: value for name, value in given.items() if value is not None})
-    except TypeError as error:
+        return json_of({name: value for name, value in given.items() if value is not None})
+    except (TypeError, ValueError) as error:
         raise KesfError(f"the assumptions cannot be used: {error}") from error

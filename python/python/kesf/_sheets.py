@@ -13,7 +13,7 @@ import numpy as np
 
 from . import _kesf
 from ._calls import unit_system
-from ._errors import Finding, KesfError, findings_of
+from ._errors import Failure, Finding, KesfError, findings_of
 from ._fabrics import named
 from ._html import findings as html_findings
 from ._html import lines, number
@@ -72,7 +72,8 @@ class Sheet:
 
     @classmethod
     def from_json(cls, text: str | bytes) -> Sheet:
-        """The sheet of a document ``kesf.sheet/1`` with one fabric: its values, without curves and friction laws."""
+        """The sheet of a document ``kesf.sheet/1`` with one fabric: its values and friction laws, without curves and
+        findings."""
         sheets = Sheets.from_json(text)
         if len(sheets) != 1:
             raise KesfError(f"the document has {len(sheets)} fabrics", cure="take kesf.Sheets.from_json(text)")
@@ -208,11 +209,11 @@ class Sheet:
 
     def _repr_html_(self) -> str:
         rows = [
-            (symbol, direction or "", e.mean, e.sd, e.n, e.unit)
+            (symbol, direction or "", e.mean, e.sd, e.n, e.unit, e.status)
             for symbol, by in self.values.items()
             for direction, e in by.items()
         ]
-        header = ("parameter", "direction", "mean", "SD", "n", "unit")
+        header = ("parameter", "direction", "mean", "SD", "n", "unit", "status")
         caption = f"{self.title or self.name}, {self.origin} data"
         return html_table(header, rows, caption, 60) + self._sparklines() + html_findings(self.findings)
 
@@ -241,18 +242,22 @@ def _sheet(version: str, packed: bytes) -> Sheet:
 class Sheets(Sequence[Sheet]):
     """The sheets of several fabrics, each with a name of its own.
 
+    Attributes:
+        failures: What could not be read of the batch that they are of.
+
     >>> import kesf
     >>> sheets = kesf.characterise(kesf.read("kesf_data"))
     >>> len(sheets), sheets["petrak_m1"].origin
     (13, 'published')
     """
 
-    def __init__(self, sheets: Sequence[Sheet]) -> None:
+    def __init__(self, sheets: Sequence[Sheet], failures: tuple[Failure, ...] = ()) -> None:
         self._sheets = tuple(sheets)
+        self.failures = failures
 
     @classmethod
     def from_json(cls, text: str | bytes) -> Sheets:
-        """The sheets of a document ``kesf.sheet/1``: their values, without curves and friction laws."""
+        """The sheets of a document ``kesf.sheet/1``: their values and friction laws, without curves and findings."""
         text = text.decode() if isinstance(text, bytes) else text
         return cls([Sheet(native) for native in _kesf.Sheet.of_document(text)])
 
@@ -279,7 +284,7 @@ class Sheets(Sequence[Sheet]):
     def __getitem__(self, index: int | str | slice) -> Sheet | Sheets:
         """A sheet by its place or the name of its fabric, or some of them."""
         if isinstance(index, slice):
-            return Sheets(self._sheets[index])
+            return Sheets(self._sheets[index], self.failures)
         if isinstance(index, str):
             return named(self._sheets, index)
         return self._sheets[index]
@@ -291,12 +296,15 @@ class Sheets(Sequence[Sheet]):
         return iter(self._sheets)
 
     def __eq__(self, other: object) -> bool:
-        return self._sheets == other._sheets if isinstance(other, Sheets) else NotImplemented
+        if not isinstance(other, Sheets):
+            return NotImplemented
+        return (self._sheets, self.failures) == (other._sheets, other.failures)
 
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        return f"<kesf.Sheets: {len(self)} fabrics>"
+        failed = f", {len(self.failures)} failures" if self.failures else ""
+        return f"<kesf.Sheets: {len(self)} fabrics{failed}>"
 
     def _repr_html_(self) -> str:
         table = self.parameters("kes", wide=True)

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from ._data import RawOutcome, Result, arrays_of
 from ._errors import Failure, Finding, failures_of, findings_of
+from ._html import findings as html_findings
 from ._html import lines
 from ._html import table as html_table
-from ._table import Table
+from ._table import Table, predictions_html
 from ._types import Floats, Indices
 
 
@@ -82,7 +83,8 @@ class Solution(Result):
         predictions: Its rows of ``predictions.csv``.
         history: Probes and energies against load factor or time; empty for a linear case.
         findings: What a reader of the result must know, of the section and of the solution.
-        failures: What failed within it: a search that did not reach its end.
+        failures: What failed within it: a search that did not reach its end; of a fabric that the case names, files
+            that could not be read.
         arrays: Every field by name; the properties say which.
 
     >>> import kesf
@@ -124,7 +126,8 @@ class Solution(Result):
 
     @property
     def displacement(self) -> Floats:
-        """Displacements u, v, w (m) and rotations (rad) of the nodes, shape (nodes, 6)."""
+        """Displacements u, v, w (m) and rotations (rad) of the nodes, shape (nodes, 6); of vibrations and buckling the
+        first shape, which has no size."""
         return self.arrays["displacement"]
 
     @property
@@ -178,8 +181,13 @@ class Solution(Result):
         return self.arrays["frequencies"]
 
     @property
+    def load_factors(self) -> Floats:
+        """Factors of the loads at which the sheet buckles (1), ascending; empty but for a buckling analysis."""
+        return np.array(self.document["results"].get("load_factors") or [], dtype=np.float64)
+
+    @property
     def modes(self) -> Floats | None:
-        """Shapes of the modes, (modes, nodes, 6), with a largest displacement of 1 m; of a modal analysis only."""
+        """Shapes of vibrations or buckling, (modes, nodes, 6), with a largest displacement of 1; they have no size."""
         return self.arrays.get("modes")
 
     @property
@@ -189,8 +197,14 @@ class Solution(Result):
 
     @property
     def w_max(self) -> float:
-        """The largest |w| with its sign (m)."""
+        """The largest |w| with its sign (m); of vibrations and buckling that of a shape, which has no size."""
         return float(self.document["results"]["w_max"]["value"])
+
+    @property
+    def in_plane_max(self) -> float | None:
+        """The largest displacement within the plane (m), of a sheet that stays in it; else None."""
+        found = self.document["results"].get("in_plane_max")
+        return None if found is None else float(found["value"])
 
     @property
     def strain_energy(self) -> float | None:
@@ -224,12 +238,22 @@ class Solution(Result):
 
     def __repr__(self) -> str:
         of = f" of {self.fabric}" if self.fabric else ""
-        return f"<kesf.Solution {self.case}{of}: {self.status}, w_max {self.w_max:.4g} m, {self.mesh!r}>"
+        return f"<kesf.Solution {self.case}{of}: {self.status}, {self._first}, {self.mesh!r}>"
+
+    @property
+    def _first(self) -> str:
+        """What is looked at first."""
+        if len(self.frequencies):
+            return f"first frequency {self.frequencies[0]:.4g} Hz"
+        if len(self.load_factors):
+            return f"first load factor {self.load_factors[0]:.4g}"
+        if self.in_plane_max is not None:
+            return f"in-plane displacement up to {self.in_plane_max:.4g} m"
+        return f"w_max {self.w_max:.4g} m"
 
     def _repr_html_(self) -> str:
-        rows = [(r["quantity"], r["simulated"], r["measured"], r["unit"]) for r in self.predictions.rows()]
         caption = f"{self.case} {self.fabric or ''}: {self.status}"
-        return html_table(("quantity", "simulated", "measured", "unit"), rows, caption) + lines([self.profile])
+        return predictions_html(self.predictions, caption) + lines([self.profile]) + html_findings(self.findings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,12 +264,14 @@ class Drape(Result):
         document: Its entry of ``kesf.solution/1``.
         predictions: Its rows of ``predictions.csv``.
         findings: What a reader of the result must know.
+        failures: Files of its fabric that could not be read.
         arrays: Fields of the finest state by name; the properties say which.
     """
 
     document: dict[str, Any] = field(repr=False)
     predictions: Table = field(repr=False)
     findings: tuple[Finding, ...] = field(repr=False)
+    failures: tuple[Failure, ...] = field(repr=False)
     arrays: dict[str, NDArray[Any]] = field(repr=False)
 
     @property
@@ -316,11 +342,14 @@ class Drape(Result):
         )
 
     def _repr_html_(self) -> str:
-        rows = [(r["quantity"], r["simulated"], r["measured"]) for r in self.predictions.rows()]
         angle = np.linspace(0.0, 2.0 * np.pi, len(self.outline) + 1)
         rim = np.append(self.outline, self.outline[:1])
         shadow = lines([(rim * np.cos(angle), rim * np.sin(angle))], 120, 120)
-        return html_table(("quantity", "simulated", "measured"), rows, f"{self.case} {self.fabric or ''}") + shadow
+        return (
+            predictions_html(self.predictions, f"{self.case} {self.fabric or ''}")
+            + shadow
+            + html_findings(self.findings)
+        )
 
 
 def solution_of(raw: RawOutcome) -> Solution:
@@ -338,10 +367,11 @@ def solution_of(raw: RawOutcome) -> Solution:
 
 def drape_of(raw: RawOutcome) -> Drape:
     """The drape of a native simulation."""
-    document, predictions, _, arrays, findings, _ = raw
+    document, predictions, _, arrays, findings, failures = raw
     return Drape(
         document=json.loads(document)["solutions"][0],
         predictions=Table(predictions),
         findings=findings_of(findings),
+        failures=failures_of(failures),
         arrays=arrays_of(arrays),
     )

@@ -81,3 +81,11 @@ class Table:
 
     def _repr_html_(self) -> str:
         return html_table(self.column_names, self._cells())
+
+
+def predictions_html(
+    predictions: Table, caption: str = "", columns: Sequence[str] = ("quantity", "simulated", "measured", "unit")
+) -> str:
+    """Rows of ``predictions.csv`` with where they come from and what speaks against them."""
+    header = (*columns, "origin", "inputs", "status", "remark")
+    return html_table(header, [[row[name] for name in header] for row in predictions.rows()], caption)

@@ -128,6 +128,14 @@ super::facts! {
             /// Name of the fabric.
             fabric: String,
         } = "{fabric}: the document was changed since it was written: its numbers are stated and count as synthetic data, and its inputs and bands, which are of others, are left out";
+        /// A section of a document that had laws beside it.
+        "C026" LawsLeftOut {
+            /// Name of the fabric.
+            fabric: String,
+            /// The laws.
+            laws: Vec<String>,
+        } = "{fabric}: the section was made with laws that its document does not hold ({}): results are those of its matrices alone; \
+             give the measurements or the sheet for them", laws.join(", ");
         /// No hysteresis of bending.
         "C017" NoHysteresis {
             /// Name of the fabric.

@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::characterise::{FabricSheet, ValueStatus};
 use crate::constitutive::{Constitutive, Entry, MeasuredInput, Provenance, SectionDerivative, Used, entries};
+use crate::finding::{Fact, SectionFact};
 use crate::instrument::Origin;
+use crate::law::Mode;
 
 /// `kesf.section/1`: shell sections with the assumptions behind them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,6 +55,23 @@ pub struct SectionEntry {
     /// The values that the section was made of.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inputs: Vec<SectionInputEntry>,
+    /// Laws that stood beside the matrices and that this document does not hold: `friction`, `tensile curve`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub without: Vec<Cow<'static, str>>,
+}
+
+/// Names of the laws beside the matrices of a section, or of those that it lost in an earlier document.
+fn laws(made: &Constitutive) -> Vec<Cow<'static, str>> {
+    let Some(law) = &made.law else {
+        let lost = made.findings.iter().find_map(|finding| match &finding.fact {
+            Fact::Section(SectionFact::LawsLeftOut { laws, .. }) => Some(laws),
+            _ => None,
+        });
+        return lost.into_iter().flatten().map(|law| law.clone().into()).collect();
+    };
+    let has_curves = law.channels[..2].iter().any(Option::is_some);
+    let named = [("friction", law.mode != Mode::Elastic), ("tensile curve", has_curves)];
+    named.into_iter().filter_map(|(name, is_there)| is_there.then_some(name.into())).collect()
 }
 
 /// A value that a section was made of.
@@ -126,6 +145,7 @@ pub fn section_document<'a>(
         assumptions: made.used.iter().map(assumption).collect(),
         uncertainty: entries(&made.section, &made.inputs),
         inputs: made.inputs.iter().map(SectionInputEntry::new).collect(),
+        without: laws(made),
     };
     let units =
         [("areal_density", "kg/m²"), ("d_b", "N·m"), ("d_m", "N/m"), ("d_s", "N/m"), ("thickness", "m")];
