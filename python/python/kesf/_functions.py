@@ -163,10 +163,9 @@ def characterise(
     if isinstance(fabric, (str, os.PathLike)):
         fabric = _only(read(fabric), os.fspath(fabric))
     several = [fabric] if isinstance(fabric, Fabric) else list(fabric) if isinstance(fabric, Iterable) else [fabric]
-    strange = next((each for each in several if not isinstance(each, Fabric)), None)
-    if strange is not None or isinstance(fabric, bytes):
-        what = type(fabric if isinstance(fabric, bytes) else strange).__name__
-        raise KesfError(f"{what} is no fabric", cure="give kesf.read(...), or the path of one fabric")
+    strange = [type(each).__name__ for each in several if not isinstance(each, Fabric)]
+    if strange:
+        raise KesfError(f"{strange[0]} is no fabric", cure="give kesf.read(...), or the path of one fabric")
     moduli = [moduli] if isinstance(moduli, str) else moduli
     text = None if settings is None else text_of(settings, "<settings>", "the settings")
     native = [f._native for f in several]
