@@ -61,7 +61,7 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
     let job = options.task.job(&options.inputs, ui)?;
     let settings = RunSettings {
         charts: !options.task.no_charts,
-        formats: options.task.formats().to_vec(),
+        formats: options.task.format.0.clone(),
         population: options.population.as_deref().map(population).transpose()?,
         fields: options.fields.answer().into(),
         drapes: options.drape.answer().into(),

@@ -22,19 +22,12 @@ pub struct SimulateArgs {
 
 /// Simulates the cases of a kind.
 pub fn simulate(kind: BatchKind, inputs: &[PathBuf], args: &SimulateArgs, ui: &Ui) -> Result<Exit, Failure> {
-    let idle = args.task.about_folder();
-    if args.output.is_none() && !idle.is_empty() {
-        ui.note(&format!(
-            "{}: without effect, as no folder is written; -o FOLDER names one",
-            idle.join(", ")
-        ));
-    }
     let job = args.task.job(inputs, ui)?;
     let mut work = ui.observe(|observer| job.read(observer))?;
     let sink =
         args.output.as_ref().map(|root| open_folder(root, &job.inputs, args.task.force)).transpose()?;
     let folder =
-        sink.as_ref().map(|sink| Folder::new(sink, !args.task.no_charts).with_formats(args.task.formats()));
+        sink.as_ref().map(|sink| Folder::new(sink, !args.task.no_charts).with_formats(&args.task.format.0));
     let batch = ui.observe(|observer| Batch::simulate(&mut work, kind, folder.as_ref(), observer))?;
     if let Some(sink) = sink {
         sink.finish()?;

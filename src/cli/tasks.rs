@@ -21,9 +21,9 @@ pub struct TaskArgs {
     /// Draw no charts
     #[arg(long)]
     pub no_charts: bool,
-    /// Files of charts, with commas between them: png, svg, pdf [default: png]
-    #[arg(long, value_name = "LIST", value_parser = formats, conflicts_with = "no_charts")]
-    format: Option<Formats>,
+    /// Files of charts, with commas between them: png, svg, pdf
+    #[arg(long, value_name = "LIST", default_value = "png", value_parser = formats, conflicts_with = "no_charts")]
+    pub format: Formats,
     /// Exit with 1 if there is a finding
     #[arg(long)]
     pub strict: bool,
@@ -62,7 +62,7 @@ impl From<SolverArg> for SolverChoice {
 
 /// Kinds of files of a chart, as typed.
 #[derive(Clone, Debug)]
-struct Formats(Vec<Format>);
+pub struct Formats(pub Vec<Format>);
 
 fn formats(text: &str) -> Result<Formats, String> {
     let names: Vec<&str> = text.split(',').map(str::trim).collect();
@@ -82,18 +82,6 @@ fn time(text: &str) -> Result<f64, String> {
 }
 
 impl TaskArgs {
-    /// Files of charts.
-    pub fn formats(&self) -> &[Format] {
-        self.format.as_ref().map_or(&[Format::Png], |Formats(asked)| asked)
-    }
-
-    /// Options on the command line that are about an output folder.
-    pub fn about_folder(&self) -> Vec<&'static str> {
-        let given =
-            [("--force", self.force), ("--no-charts", self.no_charts), ("--format", self.format.is_some())];
-        given.into_iter().filter_map(|(name, is_given)| is_given.then_some(name)).collect()
-    }
-
     pub fn job(&self, paths: &[PathBuf], ui: &Ui) -> Result<Job, Failure> {
         Ok(Job {
             inputs: inputs(paths)?,

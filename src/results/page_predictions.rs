@@ -215,11 +215,8 @@ fn plates_caption(reports: &[FabricReport], cases: &[&str]) -> String {
 
 /// What the other tables have no place for: vibrations, buckling, motions, steps, and sheets in their plane.
 pub(super) fn others(report: &FabricReport) -> Option<Block> {
-    let is_plate =
-        |row: &PredictionRow| report.relative_deflections.iter().any(|(case, _)| *case == row.case);
-    let is_led = |row: &PredictionRow| report.predictions.iter().any(|r| is_leading(r) && r.case == row.case);
-    let is_other = |row: &&PredictionRow| !is_of_test(row) && !is_plate(row) && !is_led(row);
-    let rows: Vec<Vec<TableCell>> = report.predictions.iter().filter(is_other).map(other_row).collect();
+    let rows: Vec<Vec<TableCell>> =
+        report.predictions.iter().filter(|row| is_other(report, row)).map(other_row).collect();
     (!rows.is_empty()).then(|| Block::Table {
         caption: "Other predictions: vibrations, buckling, motions, steps, and sheets in their plane.".into(),
         header: ["quantity", "simulated", "95 % band", "measured", "unit", "case", "remark"]
@@ -230,25 +227,38 @@ pub(super) fn others(report: &FabricReport) -> Option<Block> {
     })
 }
 
+/// Whether the row is of no test, of no linear plate, and of no case of which a leading table shows something.
+fn is_other(report: &FabricReport, row: &PredictionRow) -> bool {
+    !is_of_test(row)
+        && report.relative_deflections.iter().all(|(case, _)| *case != row.case)
+        && report.predictions.iter().all(|other| other.case != row.case || !is_leading(other))
+}
+
 fn other_row(row: &PredictionRow) -> Vec<TableCell> {
     let (unit, factor) = match row.unit.as_str() {
         "m" => ("mm", 1e3),
         "1/s" => ("Hz", 1.0),
         unit => (unit, 1.0),
     };
-    let text = |value: Option<f64>| value.map_or("-".into(), |v| significant(factor * v));
-    let band = row.simulated_low.zip(row.simulated_high);
+    let [simulated, low, high, measured] =
+        [row.simulated, row.simulated_low, row.simulated_high, row.measured].map(|v| scaled(v, factor));
+    let has_band = row.simulated_low.is_some() && row.simulated_high.is_some();
     [
         row.quantity.clone(),
-        text(row.simulated),
-        band.map_or("-".into(), |(low, high)| format!("{} to {}", text(Some(low)), text(Some(high)))),
-        text(row.measured),
+        simulated,
+        if has_band { format!("{low} to {high}") } else { "-".into() },
+        measured,
         unit_text(unit),
         row.case.clone(),
         row.remark.clone().unwrap_or_default(),
     ]
     .map(TableCell::from)
     .to_vec()
+}
+
+/// A value in another unit.
+fn scaled(value: Option<f64>, factor: f64) -> String {
+    value.map_or("-".into(), |value| significant(factor * value))
 }
 
 #[cfg(test)]
