@@ -2,12 +2,13 @@
 
 use std::f64::consts::TAU;
 
-/// Parts of a period that a step may lengthen it by before it is told.
+/// The part of itself that the steps may lengthen a period by before it is told.
 pub(super) const LENGTHENING: f64 = 0.05;
 
-/// Sums over equal steps of a motion: squares of what each moves, and of what that changes from one step to the next.
+/// Sums over equal steps of a motion: squares of what each moves (`changes`), and of what that changes from one step to the next
+/// (`turns`).
 ///
-/// Where everything moves as `sin(ω t)`, the one is the other times `(2 sin(θ/2))²`, with θ the phase of a step. A motion of several
+/// Where everything moves as `sin(ω t)`, the turns are the changes times `(2 sin(θ/2))²`, with θ the phase of a step. A motion of several
 /// frequencies counts each by the squares of its velocity, so that small fast parts do not lead.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StepsAPeriod {

@@ -49,7 +49,8 @@ class Measurement:
             coefficient of friction (1) or height (m).
         x_unit: Unit of ``x``.
         y_unit: Unit of ``y``.
-        conditions: ``width`` and ``gauge`` (m), ``maximum`` and ``pretension`` in ``y_unit``; None where unknown.
+        conditions: ``width`` and ``gauge`` (m); ``maximum`` of what is driven: tensile (N/m), shear (rad), bending
+            (1/m), compression (Pa), friction and roughness (m); ``pretension`` (N/m); with FB4 ``contact`` (N).
         path: The file.
         metadata: Everything else that the header said.
     """

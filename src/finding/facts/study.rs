@@ -176,8 +176,12 @@ super::facts! {
             steps: f64,
             /// The part of itself that a period of so few is lengthened by.
             lengthening: f64,
-        } = "the motion has {steps:.1} steps a period, which lengthen it by {:.0} %, and what is faster is lost: take a shorter step, \
-             or a tolerance", 100.0 * lengthening;
+        } = "the motion has {steps:.1} steps a period, which {}, and what is faster is lost: take a shorter step, or a tolerance",
+            if *lengthening < 1.0 {
+                format!("lengthen it by {:.0} %", 100.0 * lengthening)
+            } else {
+                "more than double it".into()
+            };
         /// An unstable equilibrium.
         "S111" Unstable {
             /// Directions in which its energy falls.
