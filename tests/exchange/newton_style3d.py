@@ -22,7 +22,7 @@ from newton.solvers import style3d
 
 CELLS, SIDE = 20, 0.04
 # The strip: stiffness, time step (s), iterations of a step and of its linear system, most steps.
-SOFTER, STEP, ITERATIONS, LINEAR, STEPS = 200.0, 1.0 / 930.0, 10, 30, 1200
+SOFTER, STEP, ITERATIONS, LINEAR, STEPS = 200.0, 1.0 / 930.0, 10, 10, 1200
 # It rests when its speed, brought to zero at each peak of its kinetic energy, peaked so often within this part.
 PEAKS, PART = 4, 1e-4
 
