@@ -266,7 +266,9 @@ fn of_evaluation(fact: &EvaluationFact) -> Option<(Scope<'_>, ValueStatus)> {
 fn of_reading<'a>(fact: &'a ReadFact, place: Option<&'a Place>) -> Option<(Scope<'a>, ValueStatus)> {
     let file = || place.map(|place| Scope::File(&place.path));
     match fact {
-        ReadFact::AssumedDimension { .. } => Some((file()?, ValueStatus::Assumed)),
+        ReadFact::AssumedDimension { .. } | ReadFact::AssumedUnits { .. } => {
+            Some((file()?, ValueStatus::Assumed))
+        }
         ReadFact::SeveralSamples { records, .. } => Some((Scope::Records(records), ValueStatus::Doubtful)),
         ReadFact::ColumnsAsSpecimens { .. }
         | ReadFact::TwoDirections { .. }

@@ -77,7 +77,8 @@ impl Axes<'_> {
     /// `R008`, `R009`, `R010`, `R013`, `R015`.
     pub fn of(&self, column: &Column, abscissa: bool) -> Result<Axis, ReadError> {
         let error = |problem| self.context.error(column.line, column.column, problem);
-        let Some(text) = column.unit.clone().or_else(|| self.context.default_unit(column.role)) else {
+        let Some(text) = column.unit.clone().or_else(|| self.context.taken_unit(column.role, &column.name))
+        else {
             let expected = column.role.kes_unit();
             return Err(error(ReadProblem::UnitMissing { found: column.name.clone(), expected }));
         };

@@ -33,9 +33,9 @@ impl ColumnName {
             return found;
         }
         if let Some(role) = vocabulary.role_exactly(name) {
-            return Self { role: Some(role), ..Self::default() };
+            return Self { role: Some(role), words: long_words(name.split(is_no_letter)), ..Self::default() };
         }
-        let words: Vec<&str> = name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).collect();
+        let words: Vec<&str> = name.split(is_no_letter).filter(|w| !w.is_empty()).collect();
         let mut found = Self::default();
         let mut rest: Vec<&str> = Vec::new();
         let mut i = 0;
@@ -51,9 +51,7 @@ impl ColumnName {
             }
             i += 1;
         }
-        // A letter numbers specimens as well: `moment A`, `moment B`.
-        let words: Vec<&str> = rest.iter().copied().filter(|w| w.chars().nth(1).is_some()).collect();
-        found.words = normalised(&words.join(" "));
+        found.words = long_words(rest.iter().copied());
         let rest = rest.join(" ");
         found.role = vocabulary.role(&rest).or_else(|| vocabulary.role(name));
         // Nobody can say whether a factor in a name was applied.
@@ -97,6 +95,16 @@ impl ColumnName {
         }
         false
     }
+}
+
+fn is_no_letter(c: char) -> bool {
+    !c.is_alphanumeric()
+}
+
+/// Words as one; a letter numbers specimens as well, and says nothing: `moment A`, `moment B`.
+fn long_words<'w>(words: impl Iterator<Item = &'w str>) -> String {
+    let words: Vec<&str> = words.filter(|word| word.chars().nth(1).is_some()).collect();
+    normalised(&words.join(" "))
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! What is known of a file while it is read.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::column_name::ColumnName;
@@ -10,7 +12,7 @@ use super::facets::Facets;
 use super::label::Label;
 use super::seen::Seen;
 use super::vocabulary::Vocabulary;
-use crate::finding::Place;
+use crate::finding::{Finding, Place, ReadFact};
 
 /// What is known of a file before its rows are read.
 pub(super) struct Context<'a> {
@@ -30,6 +32,8 @@ pub(super) struct Context<'a> {
     pub facets: Seen<Facets>,
     /// What names of columns said that were looked at.
     pub column_names: Seen<ColumnName>,
+    /// What stands without a unit and was taken in the customary one, with that unit.
+    pub assumed_units: RefCell<BTreeMap<String, &'static str>>,
 }
 
 impl Context<'_> {
@@ -45,6 +49,28 @@ impl Context<'_> {
 
     pub fn error(&self, line: usize, column: usize, problem: ReadProblem) -> ReadError {
         ReadError::new(Place::at(self.path, line, column), problem)
+    }
+
+    /// Takes a number without a unit in the customary one, of which [`Self::note_of_units`] tells.
+    pub fn assume_unit(&self, of: &str, unit: &'static str) {
+        self.assumed_units.borrow_mut().insert(of.to_string(), unit);
+    }
+
+    /// R152: units that nobody stated.
+    pub fn note_of_units(&self) -> Option<Finding> {
+        let assumed = self.assumed_units.take();
+        let units: Vec<String> = assumed.into_iter().map(|(of, unit)| format!("{of} in {unit}")).collect();
+        (!units.is_empty()).then(|| Finding::new(ReadFact::AssumedUnits { units }).at(Place::file(self.path)))
+    }
+
+    /// The unit of a column that states none, which is taken now.
+    pub fn taken_unit(&self, role: Role, column: &str) -> Option<String> {
+        let unit = self.default_unit(role)?;
+        let is_stated = self.dialect.is_some_and(|d| d.units.contains_key(&role));
+        if !is_stated && role != Role::FrictionCoefficient {
+            self.assume_unit(column, role.kes_unit());
+        }
+        Some(unit)
     }
 
     /// The unit of a column that states none.

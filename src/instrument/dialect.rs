@@ -1,13 +1,14 @@
 //! Layouts as data: the words, marks and units of a laboratory's files.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
 use serde::{Deserialize, Deserializer, de};
 
 use super::conditions::StatedConditions;
+use super::unit_text::{is_volt, unit};
 use super::words::{folded, normalised};
-use super::{Direction, Test};
+use super::{Direction, Parameter, Test};
 use crate::finding::arrays;
 pub use crate::kes::Role;
 
@@ -193,15 +194,16 @@ pub struct Dialect {
     /// Columns in order, for files without headings.
     pub column_order: Vec<Role>,
     /// Units of columns that state none.
+    #[serde(deserialize_with = "units")]
     pub units: BTreeMap<Role, String>,
     /// Heading words of curve columns.
-    #[serde(deserialize_with = "words")]
+    #[serde(deserialize_with = "distinct_words")]
     pub columns: BTreeMap<Role, Vec<String>>,
     /// Words of header lines.
-    #[serde(deserialize_with = "words")]
+    #[serde(deserialize_with = "distinct_words")]
     pub keys: BTreeMap<HeaderKey, Vec<String>>,
     /// Words of directions.
-    #[serde(deserialize_with = "words")]
+    #[serde(deserialize_with = "distinct_words")]
     pub directions: BTreeMap<Direction, Vec<String>>,
     /// Letters of warp and weft: directions only in a column of directions, or where each stands beside the other.
     #[serde(deserialize_with = "pairs")]
@@ -210,7 +212,7 @@ pub struct Dialect {
     #[serde(deserialize_with = "words")]
     pub direction_words: BTreeMap<DirectionWord, Vec<String>>,
     /// Words of tests.
-    #[serde(deserialize_with = "words")]
+    #[serde(deserialize_with = "distinct_words")]
     pub tests: BTreeMap<Test, Vec<String>>,
     /// Words of columns that hold one branch of a curve.
     #[serde(deserialize_with = "words")]
@@ -225,7 +227,7 @@ pub struct Dialect {
     #[serde(deserialize_with = "words")]
     pub titles: BTreeMap<TitleWord, Vec<String>>,
     /// Other names of parameters, by symbol.
-    #[serde(deserialize_with = "words")]
+    #[serde(deserialize_with = "symbols")]
     pub symbols: BTreeMap<String, Vec<String>>,
     /// Conditions that the files leave out.
     pub conditions: StatedConditions,
@@ -238,6 +240,43 @@ where
 {
     let map = BTreeMap::<K, Vec<String>>::deserialize(d)?;
     Ok(map.into_iter().map(|(k, v)| (k, v.iter().map(|w| normalised(w)).collect())).collect())
+}
+
+/// Words each of which has one meaning.
+fn distinct_words<'de, D, K>(d: D) -> Result<BTreeMap<K, Vec<String>>, D::Error>
+where
+    D: Deserializer<'de>,
+    K: Deserialize<'de> + Ord,
+{
+    let map: BTreeMap<K, Vec<String>> = words(d)?;
+    let mut seen = BTreeSet::new();
+    // A word may stand twice in one list, in two ways of writing.
+    for of_key in map.values().map(|words| words.iter().collect::<BTreeSet<_>>()) {
+        if let Some(word) = of_key.into_iter().find(|word| !seen.insert(word.as_str())) {
+            return Err(de::Error::custom(format!("the word `{word}` has two meanings: keep one of them")));
+        }
+    }
+    Ok(map)
+}
+
+/// Names of parameters, by symbols that there are.
+fn symbols<'de, D: Deserializer<'de>>(d: D) -> Result<BTreeMap<String, Vec<String>>, D::Error> {
+    let map: BTreeMap<String, Vec<String>> = distinct_words(d)?;
+    match map.keys().find(|symbol| Parameter::from_symbol(symbol).is_none()) {
+        Some(symbol) => Err(de::Error::custom(format!(
+            "`{symbol}` is the symbol of no parameter, such as B, 2HB, G, LT or T0"
+        ))),
+        None => Ok(map),
+    }
+}
+
+/// Units that are known.
+fn units<'de, D: Deserializer<'de>>(d: D) -> Result<BTreeMap<Role, String>, D::Error> {
+    let map = BTreeMap::<Role, String>::deserialize(d)?;
+    for text in map.values().filter(|text| !is_volt(text)) {
+        unit(text).map_err(de::Error::custom)?;
+    }
+    Ok(map)
 }
 
 /// A letter as it is compared: with its accents, since `Ç` is a warp where `C` may be a course.
@@ -328,5 +367,20 @@ mod tests {
     #[test]
     fn an_unknown_key_of_a_dialect_is_refused() {
         assert!(Dialect::from_toml("name = \"x\"\ndelimeter = \";\"").is_err());
+    }
+
+    #[test]
+    fn what_a_file_could_not_be_read_by_is_refused() {
+        for (toml, said) in [
+            ("[directions]\nwarp = [\"SD\", \"up\"]\nweft = [\"s d\"]", "`sd` has two meanings"),
+            ("[columns]\nmoment = [\"M\"]\ncurvature = [\"m\"]", "`m` has two meanings"),
+            ("[symbols]\nXX = [\"Kenn1\"]", "`XX` is the symbol of no parameter"),
+            ("[units]\ncurvature = \"1/furlong\"", "furlong"),
+        ] {
+            let error = Dialect::from_toml(toml).unwrap_err();
+            assert!(error.to_string().contains(said) && error.span().is_some(), "{error}");
+        }
+        let volts = "[units]\nmoment = \"V\"\n[directions]\nwarp = [\"SD\", \"s d\"]";
+        assert!(Dialect::from_toml(volts).is_ok());
     }
 }

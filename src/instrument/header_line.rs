@@ -49,6 +49,12 @@ impl Scanner<'_, '_> {
                 i += 1;
                 continue;
             }
+            if filled.len() == 1
+                && let Some((name, number, offset)) = numbered::specimen(cell, vocabulary)
+            {
+                self.keep(name, vec![(number.to_string(), column + offset)], row.line);
+                return;
+            }
             let more = filled[i + 1..].iter().take_while(|(t, _)| key_of(t).is_none()).count();
             // The first value may be spelt like a key (`direction,width`).
             let count = if more == 0 && i + 1 < filled.len() { 1 } else { more };

@@ -61,6 +61,7 @@ pub(super) fn quantity_by<Q>(
         text = text.replace(',', ".");
     }
     if context.kes_units && matches!(number(&text, '.'), Number::Value(_)) {
+        context.assume_unit(name, kes_unit);
         text = format!("{text} {kes_unit}");
     }
     parse(&text).map_err(|e| {

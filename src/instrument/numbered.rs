@@ -19,6 +19,18 @@ pub(super) fn counts(row: &Row<'_>, context: &Context<'_>) -> bool {
         && numbers.iter().enumerate().all(|(i, n)| *n == Some(i % again + 1))
 }
 
+/// `Specimen 3`, `Probe Nr. 3`, `Repeat #3`: the key and the number of a line that says nothing else, and where that begins.
+pub(super) fn specimen<'l>(line: &'l str, v: Vocabulary<'_>) -> Option<(&'l str, &'l str, usize)> {
+    let (name, number) = line.trim_end().rsplit_once([' ', '\t', '#'])?;
+    let is_number = !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit());
+    let name = name.trim_end_matches([' ', '#']);
+    (is_number && v.key(name.trim_start_matches('#')) == Some(HeaderKey::Specimen)).then_some((
+        name,
+        number,
+        line.trim_end().chars().count().saturating_sub(number.len()),
+    ))
+}
+
 /// The directions that a key gives to numbers behind symbols: `1 = weft, 2 = warp`.
 fn directions(text: &str, context: &Context<'_>) -> Vec<(usize, Direction)> {
     let words: Vec<&str> = text.split(|c: char| !c.is_alphanumeric()).collect();

@@ -1,5 +1,6 @@
 //! One file: bytes to measurements, result values or a FAB record.
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -180,6 +181,7 @@ fn context<'a>(
         sheet_of_no_values: None,
         facets: Seen::default(),
         column_names: Seen::default(),
+        assumed_units: RefCell::default(),
     }
 }
 
@@ -405,6 +407,7 @@ fn plain_table(
             }
         }
     }
+    content.findings.extend(context.note_of_units());
     let mut seen = BTreeSet::new();
     content.inference.retain(|line| seen.insert(line.clone()));
     content.findings.dedup();

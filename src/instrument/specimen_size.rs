@@ -83,7 +83,7 @@ pub(super) fn length_of(
     context: &Context<'_>,
 ) -> Result<Option<f64>, ReadError> {
     let Some(entry) = header.known.get(&key) else { return Ok(None) };
-    let length: Length = quantity(entry, name, "mm", context)?;
+    let length: Length = quantity(entry, name, "cm", context)?;
     positive(length.si(), key, header, context).map(Some)
 }
 

@@ -346,9 +346,10 @@ impl<'a> Vocabulary<'a> {
             .strip_prefix('X')
             .filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
             .unwrap_or(name);
-        Parameter::from_symbol(name).or_else(|| {
-            self.exact(&normalised(name), |d| &d.symbols, |k| Parameter::from_symbol(k), &index().symbols)
-        })
+        let word = normalised(name);
+        // What a laboratory says of its own names goes before what they are elsewhere.
+        let own = self.exact(&word, |d| &d.symbols, |k| Parameter::from_symbol(k), &HashMap::new());
+        own.or_else(|| Parameter::from_symbol(name)).or_else(|| index().symbols.get(word.as_str()).copied())
     }
 
     /// Whether words are a part of a name of this parameter, as they follow each other there: `Hysteresis` beside 2HB says

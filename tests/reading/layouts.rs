@@ -217,6 +217,61 @@ fn units_are_never_guessed() {
     assert_eq!(code("fabric,G (gf/cm),B (gf·cm²/cm)\nx,0.5,0.05\n"), "R010");
 }
 
+/// Units that a dialect states for a column are a statement; that numbers without one are those of the instruments is assumed.
+#[test]
+fn units_that_are_assumed_are_told() {
+    let text = "direction,warp\nwidth,20\nK,M\n0,0\n1,0.1\n2,0.2\n";
+    let stated = "[units]\ncurvature = \"1/cm\"\nmoment = \"gf·cm/cm\"\n";
+    let told = |toml: &str| messages(&read_as("a.csv", text, &with_dialect(toml)).unwrap(), "R152");
+    let all = told("name = \"lab\"\nkes_units = true\n");
+    assert_eq!(all.len(), 1);
+    assert!(all[0].ends_with("assumed: K in 1/cm, M in gf·cm/cm, width in cm"), "{all:?}");
+    let of_width = told(&format!("name = \"lab\"\nkes_units = true\n{stated}"));
+    assert!(of_width[0].ends_with("assumed: width in cm"), "{of_width:?}");
+    let without = text.replace("width,20\n", "");
+    let content = read_as("a.csv", &without, &with_dialect(&format!("name = \"lab\"\n{stated}"))).unwrap();
+    assert!(messages(&content, "R152").is_empty());
+    let kes = ReadSettings { kes_units: true, ..ReadSettings::default() };
+    let table = read_as("t.csv", "fabric,B,2HB (gf·cm/cm)\nx,0.1,0.05\n", &kes).unwrap();
+    let told = messages(&table, "R152");
+    assert!(told.len() == 1 && told[0].ends_with("assumed: B in gf·cm²/cm"), "{told:?}");
+}
+
+/// A line that says nothing but a number of a specimen is the number of the record below it.
+#[test]
+fn a_line_numbers_the_specimen_below_it() {
+    for line in ["Specimen 3", "Specimen #3", "Specimen No. 3", "# Repeat 3", "Probe Nr. 3", "試料番号 3"]
+    {
+        let block = |line: &str| format!("{line}\nK (1/cm),M (gf·cm/cm)\n0,0\n1,0.1\n2,0.2\n\n");
+        let text = format!("direction,warp\n\n{}{}", block(line), block(&line.replace('3', "1")));
+        let content = read("a.csv", &text);
+        let numbers: Vec<usize> = content.measurements.iter().map(|m| m.specimen).collect();
+        assert_eq!(numbers, [3, 1], "{line}");
+    }
+    let toml = "name = \"lab\"\n[keys]\nspecimen = [\"Sample\"]\n";
+    let text = "direction,warp\n\nSample 7\nK (1/cm),M (gf·cm/cm)\n0,0\n1,0.1\n2,0.2\n";
+    assert_eq!(read_as("a.csv", text, &with_dialect(toml)).unwrap().measurements[0].specimen, 7);
+}
+
+/// Two words of one list of a dialect are two columns all the same; a laboratory's own names of parameters go before ours.
+#[test]
+fn a_dialect_does_not_make_one_of_two_columns() {
+    let toml = "name = \"lab\"\n[columns]\nmoment = [\"mom\", \"momraw\"]\n";
+    let text = "direction,warp\n\nK (1/cm),momraw (gf·cm/cm),mom (gf·cm/cm)\n0,0,0\n1,0.12,0.1\n2,0.24,0.2\n";
+    let content = read_as("a.csv", text, &with_dialect(toml)).unwrap();
+    assert_eq!(messages(&content, "R119").len(), 1);
+    let repeats = text.replace("momraw", "mom");
+    let content = read_as("a.csv", &repeats, &with_dialect(toml)).unwrap();
+    assert!(messages(&content, "R119").is_empty());
+    let numbered = text.replace("momraw", "moment").replace("mom (", "moment 2 (");
+    assert!(messages(&read("a.csv", &numbered), "R119").is_empty());
+    let toml = "name = \"lab\"\n[symbols]\nB = [\"2HB05\"]\n";
+    let table = "fabric,direction,2HB05 (gf·cm²/cm)\nx,warp,0.1\n";
+    let content = read_as("t.csv", table, &with_dialect(toml)).unwrap();
+    let keys: Vec<Parameter> = content.results.iter().map(|(_, value)| value.parameter).collect();
+    assert_eq!(keys, [Parameter::B]);
+}
+
 #[test]
 fn commas_for_everything_are_refused() {
     assert_eq!(

@@ -63,6 +63,11 @@ super::facts! {
             /// Lines of the header that may state it in words which are not known.
             not_understood: Vec<String>,
         } = "{}", assumed(*dimension, *value, *test, not_understood);
+        /// Numbers without a unit, in a file that states none for them.
+        "R152" AssumedUnits {
+            /// What was taken in which unit: `moment in gf·cm/cm`.
+            units: Vec<String>,
+        } = "no unit is stated, and the customary one of the instruments is assumed: {}", units.join(", ");
         /// Rows, columns or curves that sum up others.
         "R110" SummingUp {
             /// `rows`, `columns`, `curves`, `sheets` or `files`.

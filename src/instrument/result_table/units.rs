@@ -44,7 +44,11 @@ impl Table<'_, '_> {
         let error = |problem| self.context.error(line, column, problem);
         let text = match text {
             Some(text) if text != "-" || p.kes_unit() == "1" => text,
-            _ if p.kes_unit() == "1" || self.context.kes_units => p.kes_unit(),
+            _ if p.kes_unit() == "1" => "1",
+            _ if self.context.kes_units => {
+                self.context.assume_unit(p.symbol(), p.kes_unit());
+                p.kes_unit()
+            }
             _ => {
                 let found = p.symbol().to_string();
                 return Err(error(ReadProblem::UnitMissing { found, expected: p.kes_unit() }));
