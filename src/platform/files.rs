@@ -5,7 +5,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-#[cfg(any(test, all(target_family = "wasm", target_os = "unknown")))]
+// Clippy looks at the page (web/) as code of the system that it runs on.
+#[cfg(any(test, clippy, all(target_family = "wasm", target_os = "unknown")))]
 mod tree;
 
 #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
@@ -33,16 +34,7 @@ mod system {
 
 #[cfg(all(target_family = "wasm", target_os = "unknown"))]
 mod system {
-    use std::sync::{Mutex, PoisonError};
-
-    use super::{FileTree, Path, PathBuf, io};
-
-    static TREE: Mutex<FileTree> = Mutex::new(FileTree::new());
-
-    /// Puts files into the memory that stands for a system, or takes them out.
-    pub fn in_memory<T>(work: impl FnOnce(&mut FileTree) -> T) -> T {
-        work(&mut TREE.lock().unwrap_or_else(PoisonError::into_inner))
-    }
+    use super::{Path, PathBuf, in_memory, io};
 
     pub fn canonicalize(path: &Path) -> io::Result<PathBuf> {
         in_memory(|tree| tree.canonicalize(path))
@@ -69,10 +61,10 @@ mod system {
     }
 }
 
-#[cfg(all(target_family = "wasm", target_os = "unknown"))]
-pub use system::in_memory;
-#[cfg(any(test, all(target_family = "wasm", target_os = "unknown")))]
+#[cfg(any(test, clippy, all(target_family = "wasm", target_os = "unknown")))]
 pub use tree::FileTree;
+#[cfg(all(not(test), any(clippy, all(target_family = "wasm", target_os = "unknown"))))]
+pub use tree::in_memory;
 
 /// The bytes of a file.
 ///

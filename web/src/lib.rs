@@ -1,7 +1,7 @@
 //! The engine of the page that is dropped on. It has the files that the page puts into its memory, does what `kesf check`,
 //! `kesf run` and `kesf export` do with them, and gives back texts (JSON) and bytes. Elsewhere than in a browser there is
 //! nothing of it.
-#![cfg(all(target_family = "wasm", target_os = "unknown"))]
+#![cfg(any(clippy, all(target_family = "wasm", target_os = "unknown")))]
 
 mod files;
 mod said;

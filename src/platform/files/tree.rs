@@ -3,10 +3,21 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Component, Path, PathBuf};
+#[cfg(not(test))]
+use std::sync::{Mutex, PoisonError};
 
 /// Files by their absolute paths. There is a folder where there is a file below it; relative paths begin at the root.
 #[derive(Debug, Default)]
 pub struct FileTree(BTreeMap<PathBuf, Vec<u8>>);
+
+#[cfg(not(test))]
+static TREE: Mutex<FileTree> = Mutex::new(FileTree::new());
+
+/// Puts files into the memory that stands for a system, or takes them out.
+#[cfg(not(test))]
+pub fn in_memory<T>(work: impl FnOnce(&mut FileTree) -> T) -> T {
+    work(&mut TREE.lock().unwrap_or_else(PoisonError::into_inner))
+}
 
 impl FileTree {
     /// Without a file.
