@@ -13,7 +13,7 @@ use super::observer::Observer;
 use super::outcome::Outcome;
 use super::overview;
 use super::page_section::PageSection;
-use super::rests_on::DOUBTFUL;
+use super::rests_on::{DOUBTFUL, Ground};
 use super::simulate::simulate;
 use super::task::Task;
 use super::tested::{self, Tested};
@@ -45,6 +45,9 @@ pub struct FabricReport {
     pub deflections: Vec<(String, f64)>,
     /// Case and largest deflection over the bending thickness, of linear solves.
     pub relative_deflections: Vec<(String, f64)>,
+    /// Case and what the bending thickness rests on there, beside what the deflection does.
+    #[serde(default)]
+    pub thickness_grounds: BTreeMap<String, Vec<Ground>>,
     /// Case and lowest frequency (Hz), or load factor nearest to zero, of modes and of buckling.
     #[serde(default)]
     pub eigenvalues: Vec<(String, f64)>,
@@ -227,7 +230,7 @@ impl FabricReport {
         self.drapes.extend(outcome.drape_point(task));
         self.figures.extend(figures);
         if let Outcome::Solved(result) = outcome {
-            self.add_deflection(result);
+            self.add_deflection(task, result);
         }
     }
 
@@ -239,7 +242,7 @@ impl FabricReport {
         }
     }
 
-    fn add_deflection(&mut self, result: &CaseResult) {
+    fn add_deflection(&mut self, task: &Task, result: &CaseResult) {
         if result.is_modal() {
             let first = result.frequencies.first().or(result.load_factors.first());
             self.eigenvalues.extend(first.map(|value| (result.case.clone(), *value)));
@@ -252,6 +255,7 @@ impl FabricReport {
             && !result.lies_in_its_plane();
         if is_linear && result.w_over_thickness.is_finite() {
             self.relative_deflections.push((result.case.clone(), result.w_over_thickness));
+            self.thickness_grounds.insert(result.case.clone(), solved::thickness_grounds(task));
         }
         // That a linear solve cannot hold for cloth is said once, of all fabrics.
         if !matches!(result.status, Status::Ok | Status::BeyondLinear) && self.status == "ok" {

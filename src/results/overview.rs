@@ -7,9 +7,10 @@ use super::columns::Columns;
 use super::fabric::FabricReport;
 use super::judged::of_inputs;
 use super::page_problems::BEYOND_LINEAR;
+use super::rests_on::status;
 use super::sheet_text::{BOTH, BOTH_LEGEND, mark};
 use crate::case::{Analysis, Case, Problem};
-use crate::characterise::{FabricSheet, Key};
+use crate::characterise::{FabricSheet, Key, ValueStatus};
 use crate::finding::Place;
 use crate::instrument::{Direction, Parameter};
 use crate::quantity::significant;
@@ -159,8 +160,19 @@ impl<'c> Prediction<'c> {
                 format!("- ({} measured)", significant(1e2 * measured))
             }
             (value, ..) => value.map_or("-".into(), |value| {
-                format!("{}{}", significant(value), self.row(report).map(doubt).unwrap_or_default())
+                let of_deflection = self.row(report).map(of_inputs).unwrap_or_default();
+                significant(value) + &mark(of_deflection.max(self.of_thickness(report)))
             }),
+        }
+    }
+
+    /// What speaks against the bending thickness that the value is divided by.
+    fn of_thickness(&self, report: &FabricReport) -> ValueStatus {
+        match self {
+            Self::Relative(case) => {
+                report.thickness_grounds.get(*case).map(|grounds| status(grounds)).unwrap_or_default()
+            }
+            _ => ValueStatus::default(),
         }
     }
 

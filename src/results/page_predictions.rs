@@ -2,6 +2,7 @@
 
 use super::fabric::FabricReport;
 use super::page_values::is_of_test;
+use super::rests_on::remark;
 use crate::quantity::significant;
 use crate::report::html::{Block, TableCell};
 use crate::report::number::{counted, unit_text};
@@ -17,6 +18,22 @@ struct Column {
     quantity: String,
     /// Whether it is the measured value beside it.
     is_measured: bool,
+}
+
+/// The first columns of a table of fabrics.
+const NAMED: [&str; 2] = ["fabric", "origin"];
+
+/// The cells below [`NAMED`].
+fn named(report: &FabricReport) -> [TableCell; 2] {
+    [TableCell::from(&report.name), report.origin().unwrap_or("-").into()]
+}
+
+/// What speaks against a deflection, and against the bending thickness that it is divided by.
+fn relative_remark(report: &FabricReport, case: &str) -> String {
+    let of_deflection = found(report, case, "w_max").and_then(|row| row.remark.clone());
+    let of_thickness = report.thickness_grounds.get(case).and_then(|grounds| remark(grounds));
+    let of_thickness = of_thickness.map(|text| format!("{text}, by its bending thickness"));
+    [of_deflection, of_thickness].into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
 /// The row of the quantity of a case.
@@ -79,11 +96,11 @@ fn leading_table(reports: &[FabricReport], friction: bool) -> Option<Block> {
     };
     let line = |report: &FabricReport| {
         let cells = columns.iter().map(|column| leading_cell(report, column));
-        std::iter::once(TableCell::from(&report.name)).chain(cells).collect()
+        named(report).into_iter().chain(cells).collect()
     };
     (!columns.is_empty()).then(|| Block::Table {
         caption: leading_caption(&columns, friction),
-        header: std::iter::once("fabric".to_string()).chain(columns.iter().map(heading)).collect(),
+        header: NAMED.map(String::from).into_iter().chain(columns.iter().map(heading)).collect(),
         rows: reports.iter().map(line).collect(),
         of_fabrics: true,
     })
@@ -174,15 +191,16 @@ pub(super) fn plates(reports: &[FabricReport]) -> Option<Block> {
             let deflection = report.relative_deflections.iter().find(|(name, _)| name == case);
             deflection.map_or("-".into(), |(_, value)| TableCell {
                 text: significant(*value),
-                remark: found(report, case, "w_max").and_then(|row| row.remark.clone()).unwrap_or_default(),
+                remark: relative_remark(report, case),
                 ..TableCell::default()
             })
         };
-        std::iter::once(TableCell::from(&report.name)).chain(cases.iter().map(cell)).collect()
+        named(report).into_iter().chain(cases.iter().map(cell)).collect()
     };
     (!cases.is_empty()).then(|| Block::Table {
         caption: plates_caption(reports, &cases),
-        header: std::iter::once("fabric")
+        header: NAMED
+            .into_iter()
             .chain(cases.iter().map(|case| title(reports, case)))
             .map(String::from)
             .collect(),
@@ -309,21 +327,26 @@ mod tests {
         let (caption, header, rows) = table(blocks.next());
         let expected = [
             "fabric",
+            "origin",
             "drape coefficient (%): Drape",
             "measured (%)",
             "bending length warp (mm): cantilever",
         ];
         assert_eq!(header, expected);
-        let cells = ["poplin", "64.7 (62.2–67.4), 7 folds", "50.0, 6 folds", "21.20"];
+        let cells = ["poplin", "-", "64.7 (62.2–67.4), 7 folds", "50.0, 6 folds", "21.20"];
         let mut expected = cells.map(TableCell::from);
-        expected[1].remark = "quick, 1260 elements".into();
+        expected[2].remark = "quick, 1260 elements".into();
         assert_eq!(rows, [expected]);
         assert!(caption.contains("drape, and the bending length") && caption.contains("folds"), "{caption}");
         let (caption, header, rows) = table(blocks.next());
-        let expected =
-            ["fabric", "drape coefficient (%): Drape with friction", "bending length warp (mm): cantilever"];
+        let expected = [
+            "fabric",
+            "origin",
+            "drape coefficient (%): Drape with friction",
+            "bending length warp (mm): cantilever",
+        ];
         assert_eq!(header, expected);
-        assert_eq!(rows, [["poplin", "70.0", "23.40"].map(TableCell::from)]);
+        assert_eq!(rows, [["poplin", "-", "70.0", "23.40"].map(TableCell::from)]);
         assert!(caption.contains("friction") && !caption.contains("measured value"), "{caption}");
     }
 
@@ -342,11 +365,12 @@ mod tests {
             ..FabricReport::default()
         };
         let (_, header, rows) = table(leading(&[measured.clone(), simulated]).into_iter().next());
-        assert_eq!(header[2], "measured (%)");
-        assert_eq!([&rows[0][1].text, &rows[0][2].text, &rows[1][2].text], ["not simulated", "82.9", "-"]);
+        assert_eq!(header[3], "measured (%)");
+        assert_eq!([&rows[0][2].text, &rows[0][3].text, &rows[1][3].text], ["not simulated", "82.9", "-"]);
+        assert_eq!([&rows[0][1].text, &rows[1][1].text], ["measured", "-"]);
         let (_, header, rows) = table(leading(&[measured]).into_iter().next());
         assert_eq!(
-            (header[1].as_str(), rows[0][1].text.as_str()),
+            (header[2].as_str(), rows[0][2].text.as_str()),
             ("measured drape coefficient (%)", "82.9")
         );
     }
@@ -410,11 +434,31 @@ mod tests {
         let reports =
             [report("a", "rests on a doubtful B", 710.0), report("b", "", -45.0), report("c", "", 0.01)];
         let (caption, header, rows) = table(plates(&reports));
-        assert_eq!(header, ["fabric", "Own weight"]);
+        assert_eq!(header, ["fabric", "origin", "Own weight"]);
         assert!(caption.ends_with("Above it: 2 of 3 fabrics in “Own weight”."), "{caption}");
-        let remarks: Vec<&str> = rows.iter().map(|row| row[1].remark.as_str()).collect();
+        let remarks: Vec<&str> = rows.iter().map(|row| row[2].remark.as_str()).collect();
         assert_eq!(remarks, ["rests on a doubtful B", "", ""]);
         let (_, _, rows) = table(leading(&reports).into_iter().next());
-        assert_eq!(rows[0][1].remark, "rests on a doubtful B");
+        assert_eq!(rows[0][2].remark, "rests on a doubtful B");
+    }
+
+    /// The bending thickness is of the tensile stiffness, which a deflection by weight does not show.
+    #[test]
+    fn a_relative_deflection_rests_on_its_thickness_too() {
+        let input = crate::constitutive::MeasuredInput {
+            name: "E".into(),
+            estimate: crate::quantity::Estimate::stand_in(2e4),
+            status: crate::characterise::ValueStatus::Assumed,
+            source: crate::constitutive::InputSource::Document,
+            derivative: Default::default(),
+        };
+        let report = FabricReport {
+            relative_deflections: vec![("own".into(), 20.0)],
+            thickness_grounds: [("own".into(), super::super::rests_on::of_symbols(&[input], &["E"]))].into(),
+            predictions: vec![row("own", "w_max", 1e-3, None)],
+            ..FabricReport::default()
+        };
+        assert_eq!(relative_remark(&report, "own"), "rests on an assumed E, by its bending thickness");
+        assert_eq!(relative_remark(&report, "other"), "");
     }
 }

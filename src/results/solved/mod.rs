@@ -102,6 +102,11 @@ pub(super) fn all_grounds(task: &Task, result: &CaseResult) -> Vec<Ground> {
     rests_on::each_once(rows.iter().flat_map(|row| grounds(result, &inputs, &row.quantity)))
 }
 
+/// What the bending thickness, by which deflections are divided, rests on beside them: the tensile stiffness.
+pub(super) fn thickness_grounds(task: &Task) -> Vec<Ground> {
+    rests_on::of_symbols(&rests_on::known(task), &["E"])
+}
+
 /// The sheet before and after; `None` of vibrations, which have no size, and of a search that left all numbers.
 pub(super) fn deflected(task: &Task, result: &CaseResult) -> Option<Deflected> {
     let all = &result.solution.displacement;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{adapted, all_grounds, convergence, effort, search};
+use super::{adapted, all_grounds, convergence, effort, search, thickness_grounds};
 use crate::model::Model;
 use crate::quantity::significant;
 use crate::results::columns::Columns;
@@ -49,7 +49,9 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
             // The shape of a mode has no size.
             continue;
         }
-        let [w, ratio] = [significant(1e3 * r.w_max) + &mark, significant(r.w_over_thickness)];
+        let of_ratio = all_grounds(task, r).into_iter().chain(thickness_grounds(task)).collect::<Vec<_>>();
+        let ratio = significant(r.w_over_thickness) + &rests_on::mark(&of_ratio);
+        let w = significant(1e3 * r.w_max) + &mark;
         let elements = elements(&r.model);
         let status = status(r.status).to_string();
         if r.lies_in_its_plane() {
