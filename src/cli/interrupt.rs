@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::exit::Exit;
+use crate::report::write::told_of_interruption;
 use crate::results::Failure;
 
 /// Set by the signal, read between items of work.
@@ -26,8 +27,7 @@ pub fn catch(silent: bool) -> Result<(), Failure> {
     ctrlc::set_handler(move || {
         if !INTERRUPTED.swap(true, Ordering::Relaxed) {
             if !silent {
-                let text = "interrupted: what is written stays, and the same run goes on from there";
-                let _ = writeln!(std::io::stderr(), "{text}");
+                let _ = writeln!(std::io::stderr(), "{}", told_of_interruption());
             }
             // A step of a solver may take minutes, and the user has waited already.
             std::thread::sleep(MOMENT);

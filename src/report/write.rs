@@ -4,6 +4,7 @@ use crate::finding::{Place, as_text, errors, path_as_text};
 use std::fs::{self, File};
 use std::io::{self, BufReader, BufWriter, Write as _};
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -113,11 +114,24 @@ fn without_temporary_name(error: io::Error) -> io::Error {
     io::Error::new(error.kind(), text.split(" at path ").next().unwrap_or_default())
 }
 
+/// Whether a file was put in place.
+static WROTE: AtomicBool = AtomicBool::new(false);
+
+/// What is told of work that the user ends.
+pub fn told_of_interruption() -> &'static str {
+    if WROTE.load(Ordering::Relaxed) {
+        "interrupted: what is written stays, and the same run goes on from there"
+    } else {
+        "interrupted: nothing was written"
+    }
+}
+
 /// Lets the system put a temporary file on the disk and gives it its name.
 pub(super) fn place(file: NamedTempFile, path: &Path) -> Result<(), OutputError> {
     let failed = |source: io::Error| OutputError::Write { path: path.to_path_buf(), source };
     file.as_file().sync_data().map_err(failed)?;
     file.persist(path).map_err(|e| failed(e.error))?;
+    WROTE.store(true, Ordering::Relaxed);
     Ok(())
 }
 

@@ -120,3 +120,22 @@ fn what_stands_in_is_told_of_a_fabric_without_an_areal_density() {
     assert_ne!(of("B warp")["simulated_low"], "");
     assert_eq!(of("B weft")["simulated_low"], "", "the weft has none of the repeats of the warp");
 }
+
+/// What is ended before anything is written does not say that something stays.
+#[cfg(unix)]
+#[test]
+fn an_interruption_says_what_is_there() {
+    let mut command = kesf();
+    // It waits for what nobody writes.
+    command.args(["characterise", "-"]).stdin(Stdio::piped()).stderr(Stdio::piped()).stdout(Stdio::null());
+    let child = command.spawn().unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    let mut child = child;
+    let held = child.stdin.take();
+    let done = child.wait_with_output().unwrap();
+    drop(held);
+    assert_eq!(done.status.code(), Some(130));
+    assert_eq!(stderr(&done), "interrupted: nothing was written\n");
+}
