@@ -191,7 +191,13 @@ pub fn read(job: &Job, settings: &RunSettings, observer: &Observer) -> Result<Ru
     if job.share.is_some_and(|share| !share.speaks_for_all()) {
         failures.clear();
     }
-    let mut catalogue = Catalogue::find(&job.reading, &fabrics, &moduli, job.share, observer)?;
+    let mut catalogue = Catalogue::find(
+        &job.reading,
+        &fabrics,
+        &moduli,
+        job.share.map(|share| (share, job.inputs.as_slice())),
+        observer,
+    )?;
     failures.append(&mut catalogue.failures);
     let fabrics = job.share.is_none().then(|| catalogue.len());
     let cases = settings.drapes.choose(cases, fabrics, observer);
@@ -239,7 +245,7 @@ pub fn write(
     failures.extend(made.iter().flat_map(|m| m.failures.iter().cloned()));
     failures.extend(own.iter().flat_map(Own::failures));
     failures.iter().for_each(|failure| observer.failed(failure));
-    failures.splice(0..0, work.failures_of_fabrics());
+    failures.splice(0..0, work.failures.iter().cloned());
 
     let results = Results {
         work,

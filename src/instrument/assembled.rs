@@ -1,5 +1,6 @@
 //! What the files of a group say, put together as fabrics.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -24,6 +25,20 @@ pub(super) struct Group {
     pub named: bool,
 }
 
+impl Group {
+    /// The name that its folder or file gives it.
+    pub fn own_name(&self) -> Cow<'_, str> {
+        match &self.name {
+            Some(name) => name.into(),
+            None => {
+                let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
+                // `<stdin>` stands for a path.
+                stem.trim_matches(['<', '>']).to_string().into()
+            }
+        }
+    }
+}
+
 /// What is known of a group before its files are read. A library of thousands of groups does not keep it.
 pub(super) struct AboutGroup {
     pub info: FabricInfo,
@@ -44,12 +59,8 @@ pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileConte
     let left_out = contents.iter().flat_map(|c| c.failures.iter().filter_map(|e| e.about.fabric.as_ref()));
     let several = names.iter().copied().chain(left_out).collect::<BTreeSet<_>>().len() > 1;
     let only = if names.len() == 1 { names.first().map(|n| (*n).clone()) } else { None };
-    // `<stdin>` stands for a path.
-    let stem = || {
-        let stem = group.path.file_stem().unwrap_or_default().to_string_lossy();
-        stem.trim_matches(['<', '>']).to_string()
-    };
-    let name = group.name.clone().or(sample).or(only).or(of_fab).unwrap_or_else(stem);
+    let named = group.name.clone().or(sample).or(only).or(of_fab);
+    let name = named.unwrap_or_else(|| group.own_name().into_owned());
     let mut out: BTreeMap<String, FabricInput> = BTreeMap::new();
     if !several {
         out.insert(name.clone(), blank(&name, group, about));

@@ -1,5 +1,6 @@
 //! Folders and files to fabrics, and batches that no bad file stops.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -174,9 +175,20 @@ impl Library {
         })
     }
 
-    /// Keeps the fabrics whose folder or file is wanted; with `alone`, nothing is said of the inputs as a whole.
-    pub fn keep(&mut self, wanted: impl Fn(&Path) -> bool, alone: bool) {
-        self.groups.retain(|group| wanted(&group.path));
+    /// The name of the fabric of one of the [`groups`](Self::groups) by its folder or file alone.
+    pub fn name(&self, group: usize) -> Option<Cow<'_, str>> {
+        self.groups.get(group).map(Group::own_name)
+    }
+
+    /// Names of the folders that are fabrics.
+    pub fn names_of_folders(&self) -> impl Iterator<Item = &str> {
+        self.groups.iter().filter_map(|group| group.name.as_deref())
+    }
+
+    /// Keeps the fabrics whose folder or file is wanted, by its path and the [name](Self::name) that it gives; with `alone`,
+    /// nothing is said of the inputs as a whole.
+    pub fn keep(&mut self, wanted: impl Fn(&Path, &str) -> bool, alone: bool) {
+        self.groups.retain(|group| wanted(&group.path, &group.own_name()));
         if alone {
             self.findings.clear();
             self.failures.clear();

@@ -60,10 +60,24 @@ errors! {
             path: PathBuf,
             /// Name of the fabric.
             fabric: String,
+            /// What its findings name of it first.
+            here: Option<String>,
             /// The first part.
             other: String,
-        } at Place::file(path), = "{fabric} is in {other} too"
+            /// What the findings there name of it first.
+            there: Option<String>,
+        } at Place::file(path), = "{fabric} is in {other} too{}", of_both(here.as_deref(), there.as_deref())
             => "give the fabrics folders or sample names of their own, or make one shard of them";
+    }
+}
+
+/// Where a fabric is in two parts, as far as their findings say it.
+fn of_both(here: Option<&str>, there: Option<&str>) -> String {
+    match (here, there) {
+        (None, None) => String::new(),
+        (Some(here), None) => format!(": here of {here}"),
+        (None, Some(there)) => format!(": there of {there}"),
+        (Some(here), Some(there)) => format!(": here of {here}, there of {there}"),
     }
 }
 

@@ -4,14 +4,13 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
-use arrow_array::cast::AsArray;
-use arrow_array::{Array, RecordBatch};
+use arrow_array::RecordBatch;
 use serde_json::json;
 
 use super::error::PartError;
 use super::evaluation::evaluate;
 use super::merge::{files_of, listed};
-use super::part::{Part, Table, key_of};
+use super::part::{Part, Table, key_of, texts};
 use crate::finding::FailureKind;
 use crate::instrument::Library;
 use crate::platform::files;
@@ -135,12 +134,6 @@ pub(super) fn fabrics(table: &RecordBatch) -> impl Iterator<Item = &str> {
     texts(table, "fabric")
 }
 
-/// A column of texts.
-fn texts<'t>(table: &'t RecordBatch, column: &str) -> impl Iterator<Item = &'t str> + use<'t> {
-    let texts = table.column_by_name(column).and_then(|column| column.as_string_opt::<i32>());
-    texts.into_iter().flat_map(|texts| (0..texts.len()).map(|at| texts.value(at)))
-}
-
 /// Whether there is a table that this program did not write.
 fn is_foreign(path: &Path) -> bool {
     let Ok(bytes) = files::read(path) else { return false };
@@ -169,7 +162,9 @@ fn keys(request: &Request, share: Share) -> Result<(String, String), Failure> {
     let on_disk = found.fabrics.iter().filter(|input| matches!(input, Input::Path(_)));
     let paths: Vec<_> = on_disk.map(|input| input.path().to_path_buf()).collect();
     let mut library = Library::find(&paths, &job.reading.read_settings()?);
-    library.keep(|path| share.shard.has(path), false);
+    library.keep(|path, name| share.wants(&job.inputs, path, name), !share.speaks_of_inputs());
+    texts.extend(library.findings().iter().map(ToString::to_string));
+    texts.extend(library.failures().iter().map(ToString::to_string));
     for (path, sources) in library.sources() {
         texts.push(path.to_string_lossy().into_owned());
         for source in sources {

@@ -105,8 +105,13 @@ pub fn merge(parts: &[Part]) -> Result<Merged, PartError> {
         for name in fabrics(part.table(Table::Results)) {
             let other = *seen.entry(name).or_insert(part);
             if other.shard != part.shard {
-                let (path, fabric) = (part.path.clone(), name.to_string());
-                return Err(PartError::Twice { path, fabric, other: other.shard.file() });
+                return Err(PartError::Twice {
+                    path: part.path.clone(),
+                    fabric: name.to_string(),
+                    here: part.place_of(name),
+                    other: other.shard.file(),
+                    there: other.place_of(name),
+                });
             }
         }
     }

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use arrow_array::RecordBatch;
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, UInt64Type};
+use arrow_array::{Array, RecordBatch};
 use bytes::Bytes;
 use sha2::{Digest, Sha256};
 
@@ -37,6 +37,10 @@ const KEY: &str = "kesf.key";
 const CASES: &str = "kesf.cases";
 /// Hash of what a file holds, texts beside its table included: its pages have no checksums.
 const CONTENT: &str = "kesf.content";
+
+/// How fabrics are divided among shards: by their names as they are in results. Parts of another rule, where a fabric may be
+/// in another shard, are neither kept nor merged with those of this one.
+const DIVISION: &str = "2";
 
 /// The key of a part that another run could make better: it is that of no request.
 const UNFINISHED: &str = "";
@@ -81,9 +85,10 @@ impl Table {
     }
 }
 
-/// The hash of texts, each with its length, and of the version of this program.
+/// The hash of texts, each with its length, of the version of this program, and of how it divides a batch.
 pub fn key_of<'t>(texts: impl IntoIterator<Item = &'t [u8]>) -> String {
     let mut digest = Sha256::new_with_prefix(env!("CARGO_PKG_VERSION"));
+    digest.update(DIVISION);
     for text in texts {
         digest.update((text.len() as u64).to_be_bytes());
         digest.update(text);
@@ -146,6 +151,12 @@ fn content_of<'t>(rows: &RecordBatch, metadata: impl Iterator<Item = (&'t str, &
         }
     }
     hexadecimal(digest)
+}
+
+/// A column of texts.
+pub(super) fn texts<'t>(table: &'t RecordBatch, column: &str) -> impl Iterator<Item = &'t str> + use<'t> {
+    let texts = table.column_by_name(column).and_then(|column| column.as_string_opt::<i32>());
+    texts.into_iter().flat_map(|texts| (0..texts.len()).map(|at| texts.value(at)))
 }
 
 /// Adds a cell with its length; one without a value has none.
@@ -213,6 +224,15 @@ impl Part {
         // Another version is another set-up.
         let set_up = format!("{} {}", text(&metadata, VERSION), text(&metadata, SET_UP));
         Ok(Self { shard, key: text(&metadata, KEY), set_up, tallies, tables, path })
+    }
+
+    /// Where a fabric of it is, by the first of its findings or failures that has a place.
+    pub(super) fn place_of(&self, fabric: &str) -> Option<String> {
+        let mut rows = [Table::Findings, Table::Failures].into_iter().flat_map(|table| {
+            let rows = self.table(table);
+            texts(rows, "fabric").zip(texts(rows, "place"))
+        });
+        rows.find(|(name, place)| *name == fabric && !place.is_empty()).map(|(_, place)| place.to_string())
     }
 
     /// One of its tables.

@@ -1,16 +1,17 @@
 //! The fabrics of a batch, known by name and by a hash of what was read, without their data: a run goes through
 //! thousands of them with one in memory at a time.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use super::failure::Failure;
 use super::inputs::{Fabric, Input, Reading, without_memory};
-use super::names::{Named, distinguish};
+use super::names::{Named, distinguish, key_of_name};
 use super::observer::Observer;
 use super::record::digest_of;
-use super::shard::Share;
+use super::shard::{Share, name_of};
 use crate::characterise::{Modulus, Settings, characterise};
 use crate::finding::{Finding, Place};
 use crate::instrument::{FabricInput, Library, ReadError, ReadSettings};
@@ -29,7 +30,7 @@ pub(crate) struct Catalogue {
     names: Vec<Named>,
     /// Whether there are fabrics that other shards have.
     pub left_out: bool,
-    /// What could not be read. The observer has it already.
+    /// What could not be read, each with the fabric that it is of. The observer has it already.
     pub failures: Vec<Failure>,
     /// What belongs to no fabric. The observer has it already.
     pub findings: Vec<Finding>,
@@ -54,9 +55,19 @@ enum Origin {
     Memory(usize),
 }
 
+/// Of what fabric something was not read.
+enum Whose {
+    /// Of the one at this place.
+    Fabric(usize),
+    /// Of one of which nothing was read.
+    Lost(String),
+    /// Nobody's in particular.
+    Unknown,
+}
+
 impl Catalogue {
-    /// Reads every fabric below the inputs, or those of a share, for its name and its hash. `moduli` are evaluated
-    /// beside those of the settings.
+    /// Reads every fabric below the inputs, or those of a share of a job with these inputs of its own, for its name and
+    /// its hash. `moduli` are evaluated beside those of the settings.
     ///
     /// # Errors
     /// Those of [`Reading::read_settings`] and [`Reading::evaluation`], and O054 if the work was cancelled.
@@ -64,15 +75,18 @@ impl Catalogue {
         reading: &Reading,
         inputs: &[Input],
         moduli: &[Modulus],
-        share: Option<Share>,
+        share: Option<(Share, &[Input])>,
         observer: &Observer,
     ) -> Result<Self, Failure> {
         let settings = reading.read_settings()?;
         let evaluation = reading.evaluation_with(moduli)?;
         let mut library = Library::find(&without_memory(inputs), &settings);
         let found = library.groups();
-        if let Some(share) = share {
-            library.keep(|path| share.shard.has(path), !share.speaks_of_inputs());
+        let mut taken = BTreeSet::new();
+        if let Some((share, own)) = share {
+            // A number behind a name must not make it that of a fabric of another shard.
+            taken.extend(library.names_of_folders().map(key_of_name));
+            library.keep(|path, name| share.wants(own, path, name), !share.speaks_of_inputs());
         }
         let findings = library.findings().to_vec();
         findings.iter().for_each(|finding| observer.found(None, finding));
@@ -92,6 +106,7 @@ impl Catalogue {
                 Some((entries, errors))
             })
         })?;
+        let share = share.map(|(share, _)| share);
         let mut catalogue = Self {
             memory: inputs.iter().filter(|input| is_wanted_in_memory(input, share)).cloned().collect(),
             left_out: found > library.groups(),
@@ -103,10 +118,14 @@ impl Catalogue {
             findings,
             library,
         };
-        let mut errors: Vec<ReadError> = catalogue.library.failures().to_vec();
-        for (entries, unread) in groups.into_iter().flatten() {
-            catalogue.add(entries?);
-            errors.extend(unread);
+        let mut errors: Vec<(ReadError, Whose)> =
+            catalogue.library.failures().iter().map(|error| (error.clone(), Whose::Unknown)).collect();
+        for (group, (entries, unread)) in
+            groups.into_iter().enumerate().filter_map(|(at, of)| Some((at, of?)))
+        {
+            let entries = entries?;
+            errors.extend(unread.into_iter().map(|error| (error, catalogue.whose(group, entries.len()))));
+            catalogue.add(entries);
         }
         for (at, input) in catalogue.memory.clone().iter().enumerate() {
             match input.in_memory(&catalogue.reading) {
@@ -114,20 +133,45 @@ impl Catalogue {
                     for fabric in fabrics {
                         catalogue.add(vec![Entry::new(Origin::Memory(at), None, fabric, true)?]);
                     }
-                    errors.extend(left_out);
+                    errors.extend(left_out.into_iter().map(|error| (error, Whose::Unknown)));
                 }
-                Some(Err(error)) => errors.push(error),
+                Some(Err(error)) => errors.push((error, Whose::Unknown)),
                 None => {}
             }
         }
         let mut names = std::mem::take(&mut catalogue.names);
-        distinguish(&mut names, |at| catalogue.path(at));
+        distinguish(&mut names, |at| catalogue.path(at), &taken);
         catalogue.names = names;
         catalogue.names.shrink_to_fit();
         catalogue.entries.shrink_to_fit();
-        catalogue.failures = errors.into_iter().map(Failure::from).collect();
+        catalogue.failures =
+            errors.into_iter().map(|(error, whose)| catalogue.failure(error, whose)).collect();
         catalogue.failures.iter().for_each(|failure| observer.failed(failure));
         Ok(catalogue)
+    }
+
+    /// Of what fabric something is that could not be read of a group, which gives so many and is the next to be added.
+    fn whose(&self, group: usize, fabrics: usize) -> Whose {
+        match fabrics {
+            0 => self.library.name(group).map_or(Whose::Unknown, |name| Whose::Lost(name.into_owned())),
+            1 => Whose::Fabric(self.entries.len()),
+            // A file of a folder of several fabrics.
+            _ => Whose::Unknown,
+        }
+    }
+
+    /// With the fabric that it is of: that which it names, or that of its folder, or what the file alone would give one.
+    fn failure(&self, error: ReadError, whose: Whose) -> Failure {
+        let failure = Failure::from(error);
+        if failure.fabric.is_some() {
+            return failure;
+        }
+        let fabric = match whose {
+            Whose::Fabric(at) => Some(self.name(at).to_string()),
+            Whose::Lost(name) => Some(name),
+            Whose::Unknown => failure.place.as_ref().map(|place| name_of(&place.path)),
+        };
+        Failure { fabric: fabric.map(Into::into), ..failure }
     }
 
     fn add(&mut self, entries: Vec<(Entry, Named)>) {
@@ -210,7 +254,8 @@ impl Catalogue {
 }
 
 fn is_wanted_in_memory(input: &Input, share: Option<Share>) -> bool {
-    !matches!(input, Input::Path(_)) && share.is_none_or(|share| share.shard.has(input.path()))
+    !matches!(input, Input::Path(_))
+        && share.is_none_or(|share| !share.of_whole || share.shard.has(input.path()))
 }
 
 impl Entry {

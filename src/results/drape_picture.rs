@@ -191,7 +191,7 @@ fn tests(seen: &[Seen]) -> BTreeMap<&Path, Named> {
     let name =
         |folder: &Path| folder.file_name().map_or("pictures".into(), OsStr::to_string_lossy).into_owned();
     let mut named: Vec<Named> = folders.iter().map(|folder| Named::new(name(folder))).collect();
-    distinguish(&mut named, |at| folders[at]);
+    distinguish(&mut named, |at| folders[at], &BTreeSet::new());
     folders.into_iter().zip(named).collect()
 }
 

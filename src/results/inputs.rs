@@ -9,11 +9,12 @@ use serde::Serialize;
 use super::failure::Failure;
 use super::names::distinguish_fabrics;
 use super::observer::Observer;
+use super::shard::name_of;
 use crate::characterise::{FabricSheet, Modulus, Settings, characterise};
 use crate::constitutive::Constitutive;
 use crate::finding::{Finding, Place};
 use crate::instrument::{
-    FabricInput, Inference, Library, ReadError, ReadSettings, parse_fabrics, read_dialect,
+    FabricInput, Inference, Library, ReadError, ReadProblem, ReadSettings, parse_fabrics, read_dialect,
 };
 use crate::platform::files;
 use crate::report::table::FabricRow;
@@ -384,36 +385,30 @@ pub fn paths_of_several(fabrics: &[Fabric]) -> BTreeSet<PathBuf> {
 pub fn unread(fabrics: &[Fabric], failures: &[Failure]) -> Vec<FabricRow> {
     let known: Vec<(&Path, &str)> =
         fabrics.iter().map(|f| (f.path.as_path(), f.sheet.name.as_str())).collect();
-    unread_of(&known, failures)
+    failures.iter().filter_map(|failure| Some(unread_row(fabric_of(&known, failure)?, failure))).collect()
 }
 
-/// The same of fabrics by their folder or file and their name.
-pub(crate) fn unread_of(fabrics: &[(&Path, &str)], failures: &[Failure]) -> Vec<FabricRow> {
-    let row = |(fabric, failure): (String, &Failure)| FabricRow {
-        fabric,
-        status: failure.code.to_string(),
-        ..FabricRow::default()
-    };
-    unread_by_fabric(fabrics, failures).map(row).collect()
+/// The row of what could not be read of a fabric.
+pub(crate) fn unread_row(fabric: String, failure: &Failure) -> FabricRow {
+    FabricRow { fabric, status: failure.code.to_string(), ..FabricRow::default() }
 }
 
-/// What could not be read, with the fabric that it is of.
-pub(crate) fn unread_by_fabric<'f>(
-    fabrics: &[(&Path, &str)],
-    failures: &'f [Failure],
-) -> impl Iterator<Item = (String, &'f Failure)> {
-    failures.iter().filter_map(|failure| Some((fabric_of(fabrics, failure)?, failure)))
-}
-
-/// The fabric of what could not be read: the one whose folder it is in, or else the name that its file would give one.
-pub(crate) fn fabric_of(fabrics: &[(&Path, &str)], failure: &Failure) -> Option<String> {
-    let path = &failure.place.as_ref().filter(|_| failure.code.starts_with('R'))?.path;
-    let mut inside =
-        fabrics.iter().filter(|(folder, _)| path.starts_with(folder) && files::is_folder(folder));
+/// The fabric of what could not be read, of fabrics by their folder or file and their name: the one in whose folder it
+/// is, or else the name that its file would give one.
+pub(super) fn fabric_of(fabrics: &[(&Path, &str)], failure: &Failure) -> Option<String> {
+    let of_reading = ReadProblem::CODES.contains(&&*failure.code);
+    let path = &failure.place.as_ref().filter(|_| of_reading)?.path;
+    if let Some(named) = &failure.fabric {
+        return Some(named.to_string());
+    }
+    let above = fabrics.iter().map(|(folder, _)| *folder).filter(|folder| path.starts_with(folder));
+    // A folder of fabrics may be one itself.
+    let own =
+        above.max_by_key(|folder| folder.components().count()).filter(|folder| files::is_folder(folder));
+    let mut inside = fabrics.iter().filter(|(folder, _)| Some(*folder) == own);
     // A file of a folder of several fabrics is nobody's in particular.
-    let own = inside.next().filter(|_| inside.next().is_none()).map(|(_, name)| (*name).to_string());
-    let stem = || path.file_stem().map(|s| s.to_string_lossy().into_owned());
-    failure.fabric.as_deref().map(str::to_string).or(own).or_else(stem)
+    let only = inside.next().filter(|_| inside.next().is_none());
+    Some(only.map_or_else(|| name_of(path), |(_, name)| (*name).to_string()))
 }
 
 /// Paths as people read them: a name from an old share may be no UTF-8, which JSON could not hold.

@@ -73,11 +73,11 @@ pub use failure::{Failure, FailureEntry};
 pub(crate) use folder::Table;
 pub use folder::{Folder, MemorySink, Sink, SinkFile};
 pub use init::{Begun, FIRST_CASE, init};
+pub(crate) use inputs::unread_row;
 pub use inputs::{
     Curves, Fabric, FileEntry, Input, Read, Reading, ReadingEntry, cases, nothing_to_read, paths_of_several,
     readable, unread, without_cases,
 };
-pub(crate) use inputs::{fabric_of, unread_by_fabric, unread_of};
 pub use names::{FILES, distinguish_fabrics};
 pub use observer::{Event, Found, Observer};
 pub use outcome::{ComparisonDocument, ComparisonEntry, Document, Outcome, Solution, SolutionDocument};

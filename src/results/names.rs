@@ -9,6 +9,12 @@ use crate::finding::{Finding, Place, Renaming, UsageFact};
 use crate::kes::Test;
 use crate::study::Case;
 
+/// What two names of fabrics share that are one folder of results somewhere: fabrics for which it is the same are told
+/// apart by numbers.
+pub(super) fn key_of_name(name: &str) -> String {
+    on_disk(&folder_name(name))
+}
+
 /// A name that the folder of a fabric can have: nothing of it leads into another, and no file or device is called so.
 fn folder_name(name: &str) -> String {
     let bare = file_name(name);
@@ -114,8 +120,13 @@ impl Named {
 }
 
 /// Numbers fabrics that share a name, so that none hides another: the invented names are nobody else's. `path` gives
-/// the folder or file of the fabric at a place of the list.
-pub(super) fn distinguish<'p>(fabrics: &mut [Named], path: impl Fn(usize) -> &'p Path) {
+/// the folder or file of the fabric at a place of the list, and `taken` the [keys](key_of_name) of names that fabrics
+/// elsewhere have.
+pub(super) fn distinguish<'p>(
+    fabrics: &mut [Named],
+    path: impl Fn(usize) -> &'p Path,
+    taken: &BTreeSet<String>,
+) {
     for (at, fabric) in fabrics.iter_mut().enumerate() {
         let name = folder_name(&fabric.name);
         if name != fabric.name {
@@ -136,7 +147,7 @@ pub(super) fn distinguish<'p>(fabrics: &mut [Named], path: impl Fn(usize) -> &'p
         *count += 1;
         if *count > 1 {
             let mut name = format!("{}-{count}", fabric.name);
-            while own.contains_key(&on_disk(&name)) {
+            while own.contains_key(&on_disk(&name)) || taken.contains(&on_disk(&name)) {
                 *count += 1;
                 name = format!("{}-{count}", fabric.name);
             }
@@ -149,7 +160,7 @@ pub(super) fn distinguish<'p>(fabrics: &mut [Named], path: impl Fn(usize) -> &'p
 /// no folder can have is changed too. Each sheet has a finding of its new name.
 pub fn distinguish_fabrics(fabrics: &mut [Fabric]) {
     let mut named: Vec<Named> = fabrics.iter().map(|f| Named::new(f.sheet.name.as_str())).collect();
-    distinguish(&mut named, |at| &fabrics[at].path);
+    distinguish(&mut named, |at| &fabrics[at].path, &BTreeSet::new());
     for (fabric, named) in fabrics.iter_mut().zip(named) {
         fabric.sheet.name = named.name;
         fabric.sheet.findings.extend(named.findings);

@@ -7,6 +7,9 @@ use std::str::FromStr;
 use sha2::{Digest, Sha256};
 
 use super::failure::Failure;
+use super::inputs::Input;
+use super::names::key_of_name;
+use crate::instrument::is_data_name;
 use crate::platform::files;
 
 /// A part of a batch: the third of seven is `3/7`.
@@ -64,19 +67,39 @@ impl Shard {
     pub fn has(self, path: &Path) -> bool {
         shard_of(path, self.count) == self.number
     }
+
+    /// Whether a fabric of this name belongs to it.
+    pub(super) fn has_name(self, name: &str) -> bool {
+        shard_of_name(name, self.count) == self.number
+    }
 }
 
-/// The number of the shard, from 1, that the fabric of a folder or file belongs to: by the hash of the last part of
-/// its path without ending, whatever its case, so that fabrics that could be of one name are in one shard and are told
-/// apart there, and a fabric more or less moves no other.
+/// The number of the shard, from 1, that the fabric of a folder or file belongs to: by the hash of the name that it gets,
+/// which is that of the folder to which it leads, or that of the file without ending. What is one name in a folder of
+/// results (letters in any case, accents in any form, characters that no folder can have) is one here, so that fabrics that
+/// could be of one name are in one shard and are told apart there, and a fabric more or less moves no other.
 pub fn shard_of(path: &Path, count: usize) -> usize {
-    // "." and ".." have a name only on disk.
-    let real = if path.file_stem().is_none() { files::canonicalize(path).ok() } else { None };
-    let stem =
-        real.as_deref().unwrap_or(path).file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
+    shard_of_name(&name_of(path), count)
+}
+
+fn shard_of_name(name: &str, count: usize) -> usize {
     let mut first = [0; 8];
-    first.copy_from_slice(&Sha256::digest(stem.as_bytes())[..8]);
+    first.copy_from_slice(&Sha256::digest(key_of_name(name).as_bytes())[..8]);
     (u64::from_be_bytes(first) % count.max(1) as u64) as usize + 1
+}
+
+/// The name that a folder or a file gives its fabric: a folder that of what it leads to, and a file its own without
+/// ending. What is not on this disk is a file if it is named as those of measurements are.
+pub(super) fn name_of(path: &Path) -> String {
+    let is_folder = files::is_folder(path);
+    // "." and ".." have a name only on disk.
+    let real = if is_folder || path.file_name().is_none() { files::canonicalize(path).ok() } else { None };
+    let path = real.as_deref().unwrap_or(path);
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let is_file = !is_folder && (files::is_file(path) || is_data_name(&name));
+    let name = if is_file { path.file_stem().unwrap_or_default().to_string_lossy() } else { name };
+    // `<stdin>` stands for a path.
+    name.trim_matches(['<', '>']).to_string()
 }
 
 impl fmt::Display for Shard {
@@ -97,13 +120,19 @@ impl FromStr for Shard {
 }
 
 impl Share {
+    /// Whether the fabric of a folder or file of that name is one of this shard: with inputs of its own, all that they name.
+    pub(crate) fn wants(self, inputs: &[Input], path: &Path, name: &str) -> bool {
+        let is_own = |input: &Input| path.starts_with(input.path()) || input.path().starts_with(path);
+        self.shard.has_name(name) || !self.of_whole && inputs.iter().any(is_own)
+    }
+
     /// Whether this shard says what is true of all of them, such as that a case cannot be read: one of them does.
     pub(crate) fn speaks_for_all(self) -> bool {
         self.shard.number == 1
     }
 
     /// Whether this shard says what was found of the inputs as they are.
-    pub(super) fn speaks_of_inputs(self) -> bool {
+    pub(crate) fn speaks_of_inputs(self) -> bool {
         !self.of_whole || self.shard.number == 1
     }
 }
@@ -122,6 +151,32 @@ mod tests {
         assert_eq!(shard_of("poplin".as_ref(), 7), 1);
         let shards: Vec<usize> = ["a", "b", "c", "d"].iter().map(|p| shard_of(p.as_ref(), 2)).collect();
         assert!(shards.contains(&1) && shards.contains(&2));
+    }
+
+    #[test]
+    fn what_is_one_name_in_results_is_in_one_shard() {
+        for (one, other) in
+            [("trail", "trail "), ("a:b", "a-b"), ("g\u{e4}nse", "ga\u{308}nse"), ("con", "fabric-con")]
+        {
+            assert_eq!(shard_of(one.as_ref(), 1000), shard_of(other.as_ref(), 1000), "{one:?}, {other:?}");
+        }
+    }
+
+    #[test]
+    fn only_files_lose_their_ending() {
+        let root = tempfile::tempdir().unwrap();
+        let folders: Vec<_> = (0..60).map(|n| root.path().join(format!("shirting.{n:04}"))).collect();
+        let shards = || folders.iter().map(|path| shard_of(path, 7)).collect::<Vec<_>>();
+        // Elsewhere they are known by their names alone.
+        let elsewhere = shards();
+        folders.iter().for_each(|path| std::fs::create_dir(path).unwrap());
+        assert_eq!(shards(), elsewhere);
+        assert!(
+            (1..=7).all(|number| elsewhere.iter().filter(|n| **n == number).count() < 20),
+            "{elsewhere:?}"
+        );
+        std::fs::write(root.path().join("lot.tab"), "").unwrap();
+        assert_eq!(name_of(&root.path().join("lot.tab")), "lot");
     }
 
     #[test]

@@ -20,7 +20,7 @@ use crate::report::workbook;
 use crate::results::{
     Benchmark, Columns, DrapePoint, FABRICS_OF_PAGE, FabricReport, Failure, FileEntry, Folder, Head, Job,
     Observer, Overview, Pages, Problems, Record, SinkFile, Table, bracket, checks, fabrics_page,
-    name_of_page, page, unread_by_fabric, unread_of, write_drape_parity, write_friction_parity,
+    name_of_page, page, unread_row, write_drape_parity, write_friction_parity,
 };
 
 /// Fabrics that the overview for people lists; all of them are in `fabrics.csv`.
@@ -153,23 +153,16 @@ impl Results<'_, '_> {
 
     /// What could not be read of each fabric.
     fn unread(&self) -> BTreeMap<String, Vec<Failure>> {
-        if self.work.failures.is_empty() {
-            return BTreeMap::new();
-        }
         let mut unread: BTreeMap<String, Vec<Failure>> = BTreeMap::new();
-        for (fabric, failure) in unread_by_fabric(&self.work.known(), &self.work.failures) {
-            unread.entry(fabric).or_default().push(failure.clone());
+        for (fabric, failure) in self.work.unread() {
+            unread.entry(fabric.to_string()).or_default().push(failure.clone());
         }
         unread
     }
 
     /// Rows of inputs that could not be read.
     pub fn unread_rows(&self) -> Vec<FabricRow> {
-        if self.work.failures.is_empty() {
-            Vec::new()
-        } else {
-            unread_of(&self.work.known(), &self.work.failures)
-        }
+        self.work.unread().map(|(fabric, failure)| unread_row(fabric.to_string(), failure)).collect()
     }
 
     /// Rows of findings that belong to no fabric.

@@ -1,16 +1,14 @@
 //! What a run is to do.
 
-use std::path::Path;
-
 use crate::case::Case;
 use crate::platform::files;
-use crate::results::{Catalogue, Failure, Limits, Share, fabric_of, named_fabric, without_fabric};
+use crate::results::{Catalogue, Failure, Limits, Share, named_fabric, without_fabric};
 
 /// What a run is to do: its cases, and its fabrics by name and hash.
 pub struct RunWork {
     pub(super) cases: Vec<Case>,
     pub(super) catalogue: Catalogue,
-    /// What could not be read. The observer has it already.
+    /// What could not be read, with the fabrics that it is of, and what is wrong with cases. The observer has it already.
     pub failures: Vec<Failure>,
     pub(super) threads: usize,
     pub(super) limits: Limits,
@@ -37,23 +35,9 @@ impl RunWork {
         idle.iter().map(|case| without_fabric(case, false)).collect()
     }
 
-    /// Folders or files of the fabrics, and their names.
-    pub(super) fn known(&self) -> Vec<(&Path, &str)> {
-        let fabrics = &self.catalogue;
-        (0..fabrics.len()).map(|at| (fabrics.path(at), fabrics.name(at))).collect()
-    }
-
-    /// What could not be read, with the fabric that each belongs to.
-    pub(super) fn failures_of_fabrics(&self) -> Vec<Failure> {
-        if self.failures.is_empty() {
-            return Vec::new();
-        }
-        let known = self.known();
-        let named = self.failures.iter().map(|failure| {
-            let fabric = fabric_of(&known, failure);
-            Failure { fabric: fabric.map(Into::into).or(failure.fabric.clone()), ..failure.clone() }
-        });
-        named.collect()
+    /// What could not be read, with the fabric that each is of.
+    pub(super) fn unread(&self) -> impl Iterator<Item = (&str, &Failure)> {
+        self.failures.iter().filter_map(|failure| Some((failure.fabric.as_deref()?, failure)))
     }
 
     /// Tasks share the threads; one that is alone has them all.

@@ -3,6 +3,8 @@
 //! Kind: own, of what other parts of the program give: tables do not depend on the number of shards, are cell for cell
 //! those of `kesf run`, and every way in which parts do not belong together is told. Distances are written out once more.
 
+#[cfg(target_os = "linux")]
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -275,7 +277,82 @@ fn a_fabric_that_is_in_two_parts_is_told() {
     for number in ["1/2", "2/2"] {
         shard(&inputs, number, &out, &[]);
     }
-    assert!(refused(&["merge", &text(&out)], "O068").contains("one is in part-0001-of-0002.parquet too"));
+    let said = refused(&["merge", &text(&out)], "O068");
+    // Both parts, and both files.
+    let (_, places) =
+        said.split_once("one is in part-0001-of-0002.parquet too: here of ").expect("the parts");
+    let (here, there) = places.split_once(", there of ").expect("both files");
+    assert!(here.contains(".csv") && there.contains(".csv") && !there.starts_with(here), "{said}");
+}
+
+/// Rows of a table in order.
+#[cfg(target_os = "linux")]
+fn sorted(bytes: &[u8], columns: &[&str]) -> Vec<Vec<String>> {
+    let mut rows = cells(bytes, columns);
+    rows.sort();
+    rows
+}
+
+/// Fabrics that get one name are told apart as in a run of all, in any number of shards, and what is not read of a fabric is
+/// that fabric's, whatever its files are called.
+#[cfg(target_os = "linux")]
+#[test]
+fn shards_name_fabrics_and_failures_as_a_run_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let lab = folder.path().join("lab");
+    let good = "parameter,unit,warp,weft\nB,gf·cm²/cm,0.1,0.1\n";
+    let names = [
+        "trail",
+        "trail ",
+        "trail-2",
+        "a:b",
+        "a-b",
+        "ok",
+        "g\u{e4}nse",
+        "ga\u{308}nse",
+        "Poplin",
+        "poplin",
+        "lot.1",
+        "lot.2",
+    ];
+    for name in names {
+        fs::create_dir_all(lab.join(name)).unwrap();
+        fs::write(lab.join(name).join("results.csv"), good).unwrap();
+    }
+    std::os::unix::fs::symlink("ok", lab.join("linkok")).unwrap();
+    for name in ["bad", "worse", "lot.3"] {
+        fs::create_dir(lab.join(name)).unwrap();
+        fs::write(lab.join(name).join("results.csv"), "\0\n").unwrap();
+    }
+    // The folder of them all is a fabric as well.
+    fs::write(lab.join("lonely.csv"), good).unwrap();
+    let [lab, run] = [text(&lab), text(&folder.path().join("run"))];
+    assert_eq!(kesf(&["run", &lab, "--no-charts", "-o", &run, "-q"]).status.code(), Some(1));
+    let written = |name: &str| fs::read(Path::new(&run).join(name)).unwrap();
+    let columns = ["fabric", "code", "place", "message"];
+    let problems = sorted(&written("problems.csv"), &columns);
+    for name in ["bad", "worse", "lot.3"] {
+        assert!(problems.iter().any(|row| row[0] == name && row[1] == "R003"), "{name}: {problems:?}");
+    }
+    let rows = cells(&written("fabrics.csv"), &["fabric", "status"]);
+    assert!(rows.iter().any(|row| row == &["worse", "R003"]) && rows.iter().all(|row| row[0] != "results"));
+    for count in [1, 3, 7] {
+        let out = folder.path().join(count.to_string());
+        for number in 1..=count {
+            shard(&[&lab], &format!("{number}/{count}"), &out, &["-q"]);
+        }
+        let merged = |table: &str| done(&["merge", &text(&out), "--table", table]).stdout;
+        let mut found = cells(&merged("findings"), &columns);
+        found.extend(cells(&merged("failures"), &columns));
+        found.sort();
+        assert_eq!(found, problems, "{count}");
+        let fabrics = |bytes: &[u8]| -> BTreeSet<String> {
+            cells(bytes, &["fabric"]).into_iter().map(|mut row| row.remove(0)).collect()
+        };
+        let mut of_run = fabrics(&written("fabrics.csv"));
+        of_run.retain(|name| !["bad", "worse", "lot.3"].contains(&name.as_str()));
+        assert_eq!(fabrics(&merged("results")), of_run, "{count}");
+    }
 }
 
 /// Cells of an answer as CSV.

@@ -59,8 +59,9 @@ class Shard:
 
 
 def shard_of(path: str, count: int) -> int:
-    """The number of the shard, from 1, that a fabric belongs to: by the hash of the last part of its path without
-    ending, whatever its case, so that fabrics that could be of one name are in one shard and are told apart there.
+    """The number of the shard, from 1, that a fabric belongs to: by the hash of the name that it gets in results of its
+    folder, or of its file without ending, so that fabrics that could be of one name are in one shard and are told apart
+    there.
 
     >>> shard_of("lot1/Poplin.csv", 7) == shard_of("zip://lot2/poplin::fabrics.zip", 7)
     True
