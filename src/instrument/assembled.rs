@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use super::content::{FileContent, ReadSettings};
 use super::dialect::HeaderKey;
 use super::means;
+use super::passed_by::Beside;
 use super::read::parse;
 use super::samples;
 use super::states::told_apart;
@@ -23,9 +24,16 @@ pub(super) struct Group {
     pub files: Vec<PathBuf>,
     /// Whether the files were named one by one.
     pub named: bool,
+    /// What is beside the files in its folders.
+    pub beside: Beside,
 }
 
 impl Group {
+    /// Of files that were named and that no folder says anything of.
+    pub fn of_files(path: &Path, files: Vec<PathBuf>) -> Self {
+        Self { path: path.to_path_buf(), name: None, files, named: true, beside: Beside::default() }
+    }
+
     /// The name that its folder or file gives it.
     pub fn own_name(&self) -> Cow<'_, str> {
         match &self.name {
@@ -132,7 +140,7 @@ pub fn parse_fabrics(
 ) -> Result<(Vec<FabricInput>, Vec<ReadError>), ReadError> {
     let content = parse(path, bytes, settings)?;
     let failures = content.failures.clone();
-    let group = Group { path: path.to_path_buf(), name: None, files: Vec::new(), named: true };
+    let group = Group::of_files(path, Vec::new());
     let about = AboutGroup { info: FabricInfo::default(), settings: settings.clone(), findings: Vec::new() };
     Ok((fabrics(&group, &about, vec![content]), failures))
 }

@@ -22,8 +22,8 @@ pub struct ReadError {
 /// What is known of an error besides its place.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct About {
-    /// The fabric that is lost by it: one of a table, or that of a folder whose fabric.toml or dialect.toml is bad;
-    /// none if it costs one file only.
+    /// The fabric that is lost by it: one of a table, that of a folder whose fabric.toml or dialect.toml is bad, or that of a
+    /// link; none if it costs one file only.
     pub fabric: Option<String>,
     /// What had been decided about the file until then, for people (`kesf check -v`).
     pub inference: Vec<String>,
@@ -275,6 +275,9 @@ problems! {
         title: String,
     } = "{title:?} says that the numbers are statistics or comparisons, and no values of fabrics",
         "remove the table, or give it another title if it holds values; standard deviations stand beside their values, or in brackets behind them";
+    /// A link among the inputs leads nowhere.
+    "O062" DanglingLink = "this link leads nowhere, and nothing was read",
+        "restore what it leads to, or remove it";
 }
 
 /// `R021`, in the words of a reader.

@@ -8,8 +8,8 @@ use super::assembled::{AboutGroup, Group, fabrics};
 use super::content::ReadSettings;
 use super::error::{ReadError, ReadProblem};
 use super::fabric_file::{DRAPE_FILE, read_dialect, read_fabric_file};
-use super::file_name::{ABOUT, EXTENSIONS};
 use super::own_results::{JOURNAL, MANIFEST, OwnResults};
+use super::passed_by::{Beside, is_data, is_hidden, without_measurement};
 use super::read::read;
 use super::vocabulary::Vocabulary;
 use super::words::normalised;
@@ -24,7 +24,7 @@ pub struct FabricBatch {
     pub fabrics: Vec<FabricInput>,
     /// One for each file that was not read; the rest of its fabric is there.
     pub failures: Vec<ReadError>,
-    /// What belongs to no fabric: results of this program that were passed by, links that lead nowhere.
+    /// What belongs to no fabric: results of this program that were passed by, folders without a measurement.
     pub findings: Vec<Finding>,
 }
 
@@ -75,12 +75,7 @@ impl Library {
             } else if let Some(folder) = fabric_folder(input) {
                 library.add_to(folder, input, settings, &mut known);
             } else {
-                library.groups.push(Group {
-                    path: input.clone(),
-                    name: None,
-                    files: vec![input.clone()],
-                    named: true,
-                });
+                library.groups.push(Group::of_files(input, vec![input.clone()]));
             }
         }
         if overlap(inputs) {
@@ -112,6 +107,9 @@ impl Library {
         }
         let told = twice.into_iter().map(|(path, files)| (Place::file(path), UsageFact::ReadOnce { files }));
         self.findings.extend(told.map(|(place, fact)| Finding::new(fact).at(place)));
+        let mut said = BTreeSet::new();
+        self.findings.retain(|finding| said.insert(finding.to_string()));
+        self.failures.retain(|error| said.insert(error.to_string()));
     }
 
     /// Adds a file that was named to those of its folder that were; `known` are the folders met so far, with
@@ -144,7 +142,7 @@ impl Library {
         }
     }
 
-    /// What belongs to no fabric: results of this program that were passed by, links that lead nowhere.
+    /// What belongs to no fabric: results of this program that were passed by, folders without a measurement.
     pub fn findings(&self) -> &[Finding] {
         &self.findings
     }
@@ -171,7 +169,7 @@ impl Library {
         self.groups.iter().map(|group| {
             let beside = group.folder().into_iter().flat_map(|folder| BESIDE.map(|name| folder.join(name)));
             let files = group.files.iter().cloned().chain(beside.filter(|file| files::is_file(file)));
-            (group.path.as_path(), files.collect())
+            (group.path.as_path(), files.chain(group.beside.sources()).collect())
         })
     }
 
@@ -251,10 +249,12 @@ impl Group {
         few: bool,
         progress: &(dyn Fn(&Path) + Sync),
     ) -> (Vec<FabricInput>, Vec<ReadError>) {
-        let about = match self.about(settings) {
+        let mut failures = self.beside.failures.clone();
+        let mut about = match self.about(settings) {
             Ok(about) => about,
-            Err(error) => return (Vec::new(), vec![error]),
+            Err(error) => return (Vec::new(), [vec![error], failures].concat()),
         };
+        about.findings.extend(self.beside.findings());
         let file = |file: &PathBuf| {
             let content = read(file, &about.settings);
             progress(file);
@@ -262,7 +262,7 @@ impl Group {
         };
         let read: Vec<_> =
             if few { self.files.iter().map(file).collect() } else { platform::map(&self.files, file) };
-        let (mut contents, mut failures) = (Vec::new(), Vec::new());
+        let mut contents = Vec::new();
         for content in read {
             match content {
                 Ok(content) => contents.push(content),
@@ -344,23 +344,6 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, ReadError> {
     files::entries(folder).map_err(unreadable)
 }
 
-fn is_hidden(path: &Path) -> bool {
-    // `~$` is the lock file of an open workbook.
-    path.file_name().is_none_or(|n| n.to_string_lossy().starts_with(['.', '~']))
-}
-
-fn is_data(path: &Path) -> bool {
-    let lower =
-        |part: Option<&std::ffi::OsStr>| part.map(|p| p.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let extension = lower(path.extension());
-    let about = ABOUT.contains(&lower(path.file_stem()).as_str());
-    let known = EXTENSIONS.contains(&extension.as_str()) && !about && files::is_file(path);
-    // JSON is used for everything: only FAB records are ours.
-    known
-        && (extension != "json"
-            || files::read(path).is_ok_and(|b| b.windows(10).any(|w| w == b"\"raw_data\"")))
-}
-
 /// Whether a folder holds results of this program and nothing else to read: charts and tables of fabrics are none
 /// themselves. One that the user names is read all the same, and one into which results were put beside measurements.
 fn is_results(folder: &Path) -> bool {
@@ -393,13 +376,6 @@ impl Library {
             self.findings.push(Finding::new(fact).at(Place::file(folder)));
         }
     }
-
-    /// Says which links lead nowhere: they are neither files nor folders.
-    fn tell_dangling(&mut self, paths: &[PathBuf]) {
-        let dangles = |path: &&PathBuf| !is_hidden(path) && files::is_link(path) && !files::exists(path);
-        let dangling = |path: &PathBuf| Finding::new(UsageFact::DanglingLink {}).at(Place::file(path));
-        self.findings.extend(paths.iter().filter(dangles).map(dangling));
-    }
 }
 
 fn walk(folder: &Path, settings: &ReadSettings, library: &mut Library) {
@@ -419,12 +395,12 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
         Ok(paths) => paths,
         Err(error) => return library.failures.push(error),
     };
-    library.tell_dangling(&paths);
+    let mut beside = Beside::of(&paths);
     let visible = || paths.iter().filter(|p| !is_hidden(p));
     let mut files: Vec<PathBuf> = visible().filter(|p| is_data(p)).cloned().collect();
-    let stated = folder.join("fabric.toml");
-    let has_fabric_file = files::is_file(&stated);
+    let has_fabric_file = files::is_file(&folder.join("fabric.toml"));
     let is_whole = has_fabric_file || (files.is_empty() && holds_tests(&paths, settings));
+    let mut below = Vec::new();
     if is_whole {
         // Everything below belongs to this fabric.
         let is_inner = |p: &PathBuf| !is_hidden(p) && files::is_folder(p) && !is_results(p);
@@ -436,21 +412,29 @@ fn search(folder: &Path, settings: &ReadSettings, library: &mut Library) {
             }
             match entries(&folder) {
                 Ok(inner) => {
-                    library.tell_dangling(&inner);
+                    beside.add(&inner);
+                    below.extend(inner.iter().filter(|p| !files::is_folder(p)).cloned());
                     files.extend(inner.iter().filter(|p| !is_hidden(p) && is_data(p)).cloned());
                     folders.extend(inner.into_iter().filter(is_inner));
                 }
-                Err(error) => library.failures.push(error),
+                Err(error) => beside.failures.push(error),
             }
         }
         files.sort();
     }
+    if files.is_empty() && !has_fabric_file {
+        library.findings.extend(without_measurement(folder, if is_whole { &below } else { &paths }));
+    }
     library.pass_by_own(folder, &mut files);
+    library.failures.extend(beside.settle(is_whole, |file| library.own.wrote(file)));
     if has_fabric_file || !files.is_empty() {
         match group(folder, files, settings) {
-            Ok(group) => library.groups.push(group),
-            Err(error) => library.failures.push(error),
+            Ok(group) => library.groups.push(Group { beside, ..group }),
+            Err(error) => library.failures.extend([vec![error], beside.failures].concat()),
         }
+    } else {
+        library.findings.extend(beside.findings());
+        library.failures.extend(beside.failures);
     }
     if !is_whole {
         for inner in visible().filter(|p| files::is_folder(p) && !is_results(p)) {
@@ -488,7 +472,10 @@ fn group(folder: &Path, files: Vec<PathBuf>, settings: &ReadSettings) -> Result<
     let real = files::canonicalize(folder_path(folder)).unwrap_or_else(|_| folder.to_path_buf());
     let name = real.file_name().map_or_else(|| "fabric".into(), |n| n.to_string_lossy().into_owned());
     match about(folder, settings) {
-        Ok(_) => Ok(Group { path: folder_path(folder).to_path_buf(), name: Some(name), files, named: false }),
+        Ok(_) => {
+            let group = Group::of_files(folder_path(folder), files);
+            Ok(Group { name: Some(name), named: false, ..group })
+        }
         Err(mut error) => {
             error.about.fabric = Some(name);
             Err(error)

@@ -57,6 +57,7 @@ mod over_columns;
 mod own_results;
 mod pages;
 mod pairs;
+mod passed_by;
 #[cfg(feature = "pictures")]
 pub mod picture;
 mod raw;

@@ -11,9 +11,17 @@ mod tree;
 
 #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
 mod system {
+    use std::io::Read as _;
+
     use super::{Path, PathBuf, io};
 
     pub use std::fs::{canonicalize, read};
+
+    pub fn start(path: &Path, most: usize) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        std::fs::File::open(path)?.take(most as u64).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    }
 
     pub fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
         std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect()
@@ -44,6 +52,10 @@ mod system {
         in_memory(|tree| tree.read(path).map(<[u8]>::to_vec))
     }
 
+    pub fn start(path: &Path, most: usize) -> io::Result<Vec<u8>> {
+        in_memory(|tree| tree.read(path).map(|bytes| bytes[..most.min(bytes.len())].to_vec()))
+    }
+
     pub fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
         in_memory(|tree| tree.entries(folder))
     }
@@ -72,6 +84,14 @@ pub use tree::in_memory;
 /// Those of the system.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     system::read(path)
+}
+
+/// The first bytes of a file, not more than `most`.
+///
+/// # Errors
+/// Those of the system.
+pub fn start(path: &Path, most: usize) -> io::Result<Vec<u8>> {
+    system::start(path, most)
 }
 
 #[cfg(feature = "parquet")]

@@ -188,7 +188,8 @@ fn every_code_has_an_explanation_and_a_file() {
     let tested: BTreeSet<&str> =
         CASES.iter().map(|c| c.0).chain(NOT_FROM_FILES.iter().map(|c| c.0)).collect();
     assert_eq!(explained, tested);
-    assert!(ReadProblem::CODES.iter().all(|c| explained.contains(c)));
+    // Of a link that leads nowhere, which not every system can keep in a folder, see tests/trust/folders.rs.
+    assert!(ReadProblem::CODES.iter().all(|c| explained.contains(c) || *c == "O062"));
 }
 
 /// One bad file among good ones costs that file only.

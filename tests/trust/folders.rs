@@ -1,6 +1,7 @@
 //! Folders of results and folders of inputs in one place, and names that are more than names.
 
 use std::fs;
+use std::path::Path;
 
 use crate::{code, first_cells, run, stderr, table, write};
 
@@ -152,7 +153,111 @@ fn links_that_lead_nowhere_are_told() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "t.csv", &table(&["A"]));
     std::os::unix::fs::symlink("/nowhere/weft.csv", folder.path().join("weft.csv")).unwrap();
-    let done = run(&["characterise", folder.path().to_str().unwrap()]);
-    assert_eq!(code(&done), 0, "{}", stderr(&done));
+    // Something is missing, also where nobody wants to hear of findings.
+    let done = run(&["characterise", folder.path().to_str().unwrap(), "-q"]);
+    assert_eq!(code(&done), 1, "{}", stderr(&done));
     assert!(stderr(&done).contains("weft.csv: O062"), "{}", stderr(&done));
+}
+
+/// Cells of the rows of a table that have this one among them.
+fn rows_with(path: &Path, cell: &str) -> Vec<Vec<String>> {
+    let mut reader = csv::ReaderBuilder::new().from_path(path).unwrap();
+    let rows = reader.records().map(|row| row.unwrap().iter().map(str::to_string).collect::<Vec<_>>());
+    rows.filter(|row| row.iter().any(|c| c == cell)).collect()
+}
+
+/// A fabric behind a link that leads nowhere is one that failed, in a run and in its parts.
+#[cfg(unix)]
+#[test]
+fn a_fabric_behind_a_link_that_leads_nowhere_failed() {
+    let folder = tempfile::tempdir().unwrap();
+    let [lab, out, parts] = ["lab", "out", "parts"].map(|name| folder.path().join(name));
+    write(&lab.join("a"), "results.csv", &table(&["a"]));
+    // The folder of both is a fabric too, and not the one that is missing.
+    write(&lab, "own.csv", &table(&["lab"]));
+    std::os::unix::fs::symlink("/nowhere/b", lab.join("b.2")).unwrap();
+    std::os::unix::fs::symlink("/nowhere/c.csv", lab.join("a/results_2.csv")).unwrap();
+    let [lab, to, parts] = [&lab, &out, &parts].map(|path| path.to_str().unwrap());
+    let done = run(&["run", "--no-charts", lab, "-o", to, "-q"]);
+    assert_eq!((code(&done), stderr(&done).matches("O062").count()), (1, 2), "{}", stderr(&done));
+    let failed: Vec<_> =
+        rows_with(&out.join("fabrics.csv"), "O062").into_iter().map(|row| row[0].clone()).collect();
+    assert_eq!(failed, ["b.2", "a"]);
+    for shard in ["1/2", "2/2"] {
+        run(&["run", "--shard", shard, lab, "-o", parts, "-q"]);
+    }
+    let merged = run(&["merge", parts, "--table", "failures"]);
+    let text = String::from_utf8(merged.stdout).unwrap();
+    assert!(text.contains("a,O062,") && text.contains("b.2,O062,"), "{text}");
+    let checked = run(&["check", lab]);
+    assert_eq!(code(&checked), 1);
+}
+
+/// A folder of a fabric from which nothing is read is told, and one of something else is not.
+#[test]
+fn folders_without_a_measurement_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let [lab, out] = ["lab", "out"].map(|name| folder.path().join(name));
+    write(&lab.join("good"), "results.csv", &table(&["good"]));
+    write(&lab.join("scans"), "scan.pdf", "%PDF");
+    write(&lab.join("scans"), "bending", "?");
+    write(&lab.join("hidden"), ".results.csv", "x");
+    write(&lab.join("cases"), "strip.toml", &fs::read_to_string(CASE).unwrap());
+    fs::create_dir(lab.join("empty")).unwrap();
+    // Folders of tests are one fabric.
+    write(&lab.join("tests/bending"), "a.doc", "");
+    write(&lab.join("tests/shear"), "b.doc", "");
+    let [lab, to] = [&lab, &out].map(|path| path.to_str().unwrap());
+    let checked = run(&["check", lab]);
+    let said = stderr(&checked);
+    assert_eq!((code(&checked), said.matches("O081").count()), (0, 4), "{said}");
+    assert!(said.contains("scans: O081") && said.contains("(2 files of other kinds: .pdf, none)"), "{said}");
+    assert!(said.contains("hidden: O081") && said.contains("(a hidden file)"), "{said}");
+    assert!(said.contains("empty: O081") && said.contains("(it is empty)"), "{said}");
+    assert!(said.contains("tests: O081") && said.contains("(2 files of other kinds: .doc)"), "{said}");
+    assert_eq!(code(&run(&["check", lab, "--strict"])), 1);
+    let document: serde_json::Value = serde_json::from_slice(&run(&["check", lab, "--json"]).stdout).unwrap();
+    let findings = document["findings"].as_array().unwrap();
+    assert_eq!(findings.iter().filter(|finding| finding["code"] == "O081").count(), 4);
+    assert_eq!(code(&run(&["run", "--no-charts", lab, "-o", to, "-q"])), 0);
+    assert_eq!(rows_with(&out.join("problems.csv"), "O081").len(), 4);
+    assert!(fs::read_to_string(out.join("index.html")).unwrap().contains("O081"));
+}
+
+/// A measurement that does not end as one is told where it lies, and a picture or a text is not.
+#[test]
+fn measurements_with_other_endings_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let [lab, out] = ["lab", "out"].map(|name| folder.path().join(name));
+    let record = fs::read_to_string("kesf_data/poplin/poplin_warp_FB1_1.csv").unwrap();
+    write(&lab.join("twill"), "bending_warp.csv", &record);
+    for name in ["bending.003", "bending.bak", "bending.LST", "shear", "raw.out"] {
+        write(&lab.join("twill"), name, &record);
+    }
+    for (name, text) in [
+        ("README", "1 2\n3 4\n5 6\n"),
+        ("notes.md", "1 2\n3 4\n5 6\n"),
+        ("strip.vtu", "1 2\n3 4\n5 6\n"),
+        ("letter", "Dear sirs,\nthe 3 samples of 5 May are on their way to you now.\n"),
+        ("bending.txt~", &record),
+        (".hidden", &record),
+    ] {
+        write(&lab.join("twill"), name, text);
+    }
+    write(&lab.join("other"), "bending.003", &record);
+    let [lab, to] = [&lab, &out].map(|path| path.to_str().unwrap());
+    let said = stderr(&run(&["check", lab]));
+    let sentence = "5 files that hold numbers were not read, as they do not end as measurements do (.003, .bak, .lst, .out, none): \
+                    \"bending.003\", \"bending.LST\", \"bending.bak\" and 2 more";
+    assert!(said.contains("twill: O080") && said.contains(sentence), "{said}");
+    assert!(
+        said.contains("other: O080 a file that holds numbers was not read") && said.contains("other: O081"),
+        "{said}"
+    );
+    run(&["run", "--no-charts", lab, "-o", to, "-q"]);
+    let rows = rows_with(&out.join("problems.csv"), "O080");
+    assert!(rows.len() == 2 && rows.iter().any(|row| row.iter().any(|cell| cell == "twill")), "{rows:?}");
+    // What is named is read.
+    let named = format!("{lab}/other/bending.003");
+    assert_eq!(code(&run(&["characterise", &named])), 0);
 }

@@ -33,8 +33,25 @@ super::facts! {
             /// How many files.
             files: usize,
         } = "{}", read_once(*files);
-        /// A link among the inputs leads nowhere.
-        "O062" DanglingLink {} = "this link leads nowhere, and nothing was read: restore what it leads to, or remove it";
+        /// Files that hold numbers and were not read, as they do not end as measurements do.
+        "O080" PassedBy {
+            /// How many files.
+            files: usize,
+            /// Their endings; `none` of those without.
+            endings: Vec<String>,
+            /// Names of the first.
+            first: Vec<String>,
+        } = "{}", passed_by(*files, endings, first);
+        /// A folder that looks like that of a fabric has no measurement.
+        "O081" NoMeasurement {
+            /// How many other files it has.
+            files: usize,
+            /// Their endings; `none` of those without.
+            endings: Vec<String>,
+            /// How many files are hidden.
+            hidden: usize,
+        } = "no measurement file is in this folder, and it gives no fabric ({}): add the measurements, or take it out of the inputs",
+            what_else(*files, endings, *hidden);
     }
 }
 
@@ -44,6 +61,36 @@ fn own_results(files: usize) -> String {
         _ => format!("{files} files here are results of this program and were not read as measurements"),
     };
     format!("{what}: write results elsewhere with -o")
+}
+
+fn passed_by(files: usize, endings: &[String], first: &[String]) -> String {
+    let named: Vec<String> = first.iter().map(|name| format!("{name:?}")).collect();
+    let more = files.saturating_sub(first.len());
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let (what, do_not) = match files {
+        1 => ("a file that holds numbers was not read".to_string(), "it does not end"),
+        _ => (format!("{files} files that hold numbers were not read"), "they do not end"),
+    };
+    format!(
+        "{what}, as {do_not} as measurements do ({}): {}{more}; rename what is a measurement to .csv or .txt, or name it one by one",
+        endings.join(", "),
+        named.join(", ")
+    )
+}
+
+fn what_else(files: usize, endings: &[String], hidden: usize) -> String {
+    let others = match files {
+        1 => format!("a file of another kind: {}", endings.join(", ")),
+        _ => format!("{files} files of other kinds: {}", endings.join(", ")),
+    };
+    let hidden_ones =
+        if hidden == 1 { "a hidden file".to_string() } else { format!("{hidden} hidden files") };
+    match (files, hidden) {
+        (0, 0) => "it is empty".into(),
+        (0, _) => hidden_ones,
+        (_, 0) => others,
+        _ => format!("{others}; {hidden_ones}"),
+    }
 }
 
 fn read_once(files: usize) -> String {
