@@ -12,6 +12,7 @@ use std::borrow::Cow;
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 use crate::characterise::{FabricSheet, FrictionLaw, LawBand, MeanBranch, Settings, ValueStatus};
 use crate::finding::{Fields, Finding};
@@ -78,6 +79,10 @@ pub struct SheetEntry {
     /// By symbol and direction: what the laws give back.
     #[serde(default)]
     pub re_extracted: IndexMap<String, IndexMap<String, ReExtractedEntry>>,
+    /// SHA-256 of the origin, the statements, the parameters, the moduli and the laws: what is changed by hand is no longer what
+    /// was measured (C027).
+    #[serde(default)]
+    pub digest: String,
 }
 
 /// What people state of a fabric (SI).
@@ -244,7 +249,7 @@ pub fn text<T: Serialize>(document: &T) -> Result<String, serde_json::Error> {
 impl SheetEntry {
     fn new(sheet: &FabricSheet) -> Self {
         let info = &sheet.info;
-        Self {
+        let entry = Self {
             name: sheet.name.clone(),
             title: info.title.clone(),
             origin: info.origin,
@@ -258,7 +263,18 @@ impl SheetEntry {
             friction: sheet.laws.clone(),
             friction_bands: sheet.law_bands().iter().map(LawBandEntry::new).collect(),
             re_extracted: re_extracted(sheet),
-        }
+            digest: String::new(),
+        };
+        Self { digest: entry.digest_of_values(), ..entry }
+    }
+
+    /// What [`Self::digest`] is as long as nobody has changed the entry, whatever the order of its keys.
+    pub(super) fn digest_of_values(&self) -> String {
+        let Self { origin, stated, parameters, moduli, friction, .. } = self;
+        let values = serde_json::to_value((origin, stated, parameters, moduli, friction));
+        let mut values = values.unwrap_or_default();
+        values.sort_all_objects();
+        Sha256::digest(values.to_string()).iter().map(|byte| format!("{byte:02x}")).collect()
     }
 }
 

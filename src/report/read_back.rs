@@ -1,6 +1,6 @@
 //! `kesf.sheet/1`, `kesf.section/1`, `kesf.fabric/1` and our U3M materials read back: what other people keep of a fabric is enough to go on with.
 //!
-//! Curves and findings are not read: they are those of measurements, which stay with the files that are named.
+//! Curves and findings are not read, but for what is told of the document itself: they are those of measurements, which stay with the files that are named.
 
 use nalgebra::{Matrix2, Matrix3};
 use serde::Deserialize;
@@ -129,11 +129,17 @@ struct Open {
 }
 
 fn sheet(entry: SheetEntry) -> Result<FabricSheet, DocumentError> {
+    let is_as_written = entry.digest == entry.digest_of_values();
     let name = entry.name;
     let unknown = |what: String| DocumentError::Content { fabric: name.clone(), what };
     let Stated { areal_density, thickness, results } = entry.stated;
-    let info = FabricInfo { areal_density, thickness, results, ..info(entry.title, entry.origin) };
+    // What somebody typed is no measurement.
+    let origin = if is_as_written { entry.origin } else { Origin::Synthetic };
+    let info = FabricInfo { areal_density, thickness, results, ..info(entry.title, origin) };
     let mut sheet = FabricSheet { name: name.clone(), info, laws: entry.friction, ..Default::default() };
+    if !is_as_written {
+        sheet.findings.push(Finding::new(SectionFact::SheetChanged { fabric: name.clone() }));
+    }
     for (symbol, values) in entry.parameters {
         let parameter = Parameter::from_symbol(&symbol)
             .ok_or_else(|| unknown(format!("`{symbol}`, which is not a parameter")))?;
@@ -350,6 +356,35 @@ mod tests {
         assert_eq!(read[0].info.results, sheet().info.results);
         let [from, back] = [&sheet(), &read[0]].map(|s| section(s, &Assumptions::default()).unwrap());
         assert_eq!((from.section, from.used), (back.section, back.used));
+    }
+
+    /// A value that somebody typed is none that was measured; a program that writes the keys in another order changes nothing.
+    #[test]
+    fn a_sheet_that_was_changed_by_hand_is_told() {
+        let written = text(&sheet_document([&sheet()], None)).unwrap();
+        let read = |text: &str| match super::read(text.as_bytes()) {
+            Ok(Some(ReadDocument::Sheets(mut read))) => read.remove(0),
+            other => panic!("{other:?}"),
+        };
+        let mut document: serde_json::Value = serde_json::from_str(&written).unwrap();
+        document.sort_all_objects();
+        let same = read(&document.to_string());
+        assert!(same.findings.is_empty() && same.info.origin == Origin::Published, "{:?}", same.findings);
+        for (pointer, value) in [
+            ("/fabrics/0/parameters/B/warp/mean", 9e-6.into()),
+            ("/fabrics/0/parameters/B/warp/n", 5.into()),
+            ("/fabrics/0/parameters/B/warp/status", "assumed".into()),
+            ("/fabrics/0/moduli/tangent_low/warp/mean", 4000.0.into()),
+            ("/fabrics/0/stated/thickness", 5e-4.into()),
+            ("/fabrics/0/origin", "measured".into()),
+            ("/fabrics/0/digest", "".into()),
+        ] {
+            let mut changed: serde_json::Value = document.clone();
+            *changed.pointer_mut(pointer).expect(pointer) = value;
+            let found = read(&changed.to_string());
+            assert_eq!(found.info.origin, Origin::Synthetic, "{pointer}");
+            assert_eq!(found.findings[0].code(), "C027", "{pointer}");
+        }
     }
 
     #[test]

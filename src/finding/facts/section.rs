@@ -136,6 +136,11 @@ super::facts! {
             laws: Vec<String>,
         } = "{fabric}: the section was made with laws that its document does not hold ({}): results are those of its matrices alone; \
              give the measurements or the sheet for them", laws.join(", ");
+        /// A sheet of a document whose values are not those that were written.
+        "C027" SheetChanged {
+            /// Name of the fabric.
+            fabric: String,
+        } = "{fabric}: the document was changed since it was written, or by another version: its values are stated and count as synthetic data";
         /// No hysteresis of bending.
         "C017" NoHysteresis {
             /// Name of the fabric.
