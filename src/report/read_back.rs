@@ -82,7 +82,10 @@ pub fn read(bytes: &[u8]) -> Result<Option<ReadDocument>, DocumentError> {
             let sections = sections(open.section)?;
             let read = sheets.zip(sections).map(|(sheet, (stated, made))| {
                 let mut sheet = sheet?;
-                sheet.info.origin = stated.info.origin;
+                // Whichever of the two was changed by hand makes it synthetic.
+                if sheet.findings.is_empty() {
+                    sheet.info.origin = stated.info.origin;
+                }
                 Ok((sheet, made))
             });
             Ok(Some(ReadDocument::Sections(read.collect::<Result<_, DocumentError>>()?)))
