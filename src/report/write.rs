@@ -1,6 +1,7 @@
 //! Putting files in place: whole or not at all, and never over somebody else's work.
 
 use crate::finding::{Place, as_text, errors, path_as_text};
+use crate::platform::files;
 use std::fs::{self, File};
 use std::io::{self, BufReader, BufWriter, Write as _};
 use std::path::{Component, Path, PathBuf};
@@ -70,6 +71,13 @@ errors! {
             #[serde(serialize_with = "path_as_text")]
             path: PathBuf,
         } at Place::file(path), = "another kesf is writing into this folder" => "wait for it, or write elsewhere with -o";
+        /// O007: results of a run that did not end.
+        "O007" Unfinished {
+            /// The folder.
+            #[serde(serialize_with = "path_as_text")]
+            path: PathBuf,
+        } at Place::file(path), = "the run into this folder was broken off or is still going on, and its tables may be those of an earlier one"
+            => "run it again, which keeps what is finished, or wait for its end";
     }
 }
 
@@ -249,11 +257,24 @@ struct ManifestOut<'f> {
 /// Bytes of a file, if it is there as it should be.
 pub type FileBytes = Result<Option<Vec<u8>>, OutputError>;
 
+/// Refuses to read results that a run has not finished: its tables are written last, and until then those of an earlier
+/// run are there.
+///
+/// # Errors
+/// [`OutputError::Unfinished`].
+pub fn refuse_unfinished(root: &Path) -> Result<(), OutputError> {
+    match files::is_file(&root.join(crate::instrument::JOURNAL)) {
+        true => Err(OutputError::Unfinished { path: root.to_path_buf() }),
+        false => Ok(()),
+    }
+}
+
 /// A reader of the files of a results folder: the bytes of a name, if they are as this program left them.
 ///
 /// # Errors
-/// [`OutputError::Manifest`] if the list of our files is none, [`OutputError::Write`] if a file cannot be read.
+/// [`OutputError::Unfinished`] while a run is writing or if it was broken off, [`OutputError::Manifest`] if the list of our files is none, [`OutputError::Write`] if a file cannot be read.
 pub fn results_reader(root: &Path) -> Result<impl Fn(&str) -> FileBytes, OutputError> {
+    refuse_unfinished(root)?;
     let files = manifest(root)?;
     Ok(move |name: &str| match files.of(name).next().filter(|_| inside(name)) {
         Some(known) => Ok(existing(&root.join(name))?.filter(|bytes| digest(bytes) == *known)),
