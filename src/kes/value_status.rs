@@ -32,6 +32,11 @@ impl ValueStatus {
         }
     }
 
+    /// The status of a name, if it is one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|status| status.name() == name)
+    }
+
     /// What stands behind a value in tables and charts; nothing where it was plainly measured.
     pub fn mark(self) -> &'static str {
         match self {
@@ -50,5 +55,17 @@ impl ValueStatus {
             Self::Assumed => "rests on an assumption",
             Self::Doubtful => "doubtful (see its findings)",
         }
+    }
+
+    /// A value as people read it, with its mark.
+    pub fn behind(self, value: &str) -> String {
+        if self == Self::Measured { value.into() } else { format!("{value} {}", self.mark()) }
+    }
+
+    /// What the marks mean, in the order in which they prevail.
+    pub fn legend() -> String {
+        let meanings = [Self::Doubtful, Self::Assumed, Self::Inferred]
+            .map(|status| format!("{} {}", status.mark(), status.meaning()));
+        meanings.join(", ")
     }
 }

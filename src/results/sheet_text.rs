@@ -115,13 +115,6 @@ fn legend(sheet: &FabricSheet) -> String {
     let moduli = sheet.moduli.keys().map(|(name, direction)| sheet.modulus_status(name, *direction));
     match values.chain(moduli).all(|status| status == ValueStatus::Measured) {
         true => String::new(),
-        false => format!("{}\n", marks()),
+        false => format!("{}\n", ValueStatus::legend()),
     }
-}
-
-/// What the marks mean, in the order in which they prevail.
-fn marks() -> String {
-    let meanings = [ValueStatus::Doubtful, ValueStatus::Assumed, ValueStatus::Inferred]
-        .map(|status| format!("{} {}", status.mark(), status.meaning()));
-    meanings.join(", ")
 }
