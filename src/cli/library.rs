@@ -9,7 +9,6 @@ use super::library_find::{self, Find};
 use super::ui::Ui;
 use crate::documents::LibraryDocument;
 use crate::library::{Shelf, Stored};
-use crate::report::number::counted;
 use crate::report::write::write_file;
 use crate::results::Failure;
 
@@ -55,8 +54,8 @@ fn build(options: &Build, ui: &Ui) -> Result<Exit, Failure> {
     write_file(&options.output, &shelf.parquet()?, options.force)?;
     let output = options.output.to_string_lossy().into_owned();
     if ui.json {
-        return ui.document(LibraryDocument::new(output, shelf.len()));
+        return ui.document(LibraryDocument::new(output, &shelf));
     }
-    ui.note(&format!("{output}: {}", counted(shelf.len(), "fabric")));
+    ui.note(&format!("{output}: {}", shelf.sentence()));
     Ok(Exit::Done)
 }

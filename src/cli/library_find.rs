@@ -13,7 +13,7 @@ use crate::documents::FoundDocument;
 use crate::library::{Answer, Bounds, LibraryError, LibraryFile, Like, Question};
 use crate::platform::files;
 use crate::report::arrow::write;
-use crate::report::arrow_text::{Records, csv, units};
+use crate::report::arrow_text::csv;
 use crate::report::number::counted;
 use crate::report::table::{FabricRow, UnitSystem, fabric_rows};
 use crate::results::{Curves, Failure, Input};
@@ -33,9 +33,9 @@ pub struct Find {
     /// Bounds in SQL and KES units, such as `thickness < 0.4 and B_warp < 0.08`
     #[arg(long = "where", value_name = "SQL")]
     bounds: Option<String>,
-    /// How many at most
-    #[arg(short = 'n', long, value_name = "COUNT", default_value_t = 10)]
-    count: usize,
+    /// How many at most [default: 10; all within bounds in a table or a document]
+    #[arg(short = 'n', long, value_name = "COUNT")]
+    count: Option<usize>,
     #[command(flatten)]
     output: OutputArgs,
     #[command(flatten)]
@@ -46,28 +46,29 @@ pub fn run(options: &Find, ui: &Ui) -> Result<Exit, Failure> {
     let format = options.output.format(ui.json)?;
     let library = LibraryFile::open(&options.library)?;
     let bounds = options.bounds.as_deref().map(|text| Bounds::parse(text, library.schema())).transpose()?;
-    let answer = answer(options, &library, bounds.clone(), ui)?;
-    let table = std::slice::from_ref(&answer.table);
+    let is_for_page = options.like.is_some() || format == ResultFormat::Text;
+    let count = Question::most(options.count, is_for_page);
+    let question = Question { like: options.like.clone().map(Like::Named), bounds: bounds.clone(), count };
+    let answer = answer(options, &library, question, ui)?;
     let bytes = match format {
         ResultFormat::Text => answer.text(bounds.as_ref()).into_bytes(),
-        ResultFormat::Csv => options.output.marked(csv(table)?),
+        ResultFormat::Csv => options.output.marked(csv(std::slice::from_ref(&answer.table))?),
         ResultFormat::Parquet => write(&answer.table, &[])?,
         ResultFormat::Json => {
             let (like, bounds) = (options.like.as_deref(), options.bounds.as_deref());
-            let (space, units, fabrics) = (&answer.axes[..], units(&answer.table), Records(table));
-            ui.complete(FoundDocument { schema: "kesf.found/1", like, bounds, space, units, fabrics })?
-                .into_bytes()
+            ui.complete(FoundDocument::new(like, bounds, &answer))?.into_bytes()
         }
         ResultFormat::Xlsx => return Err(options.output.no_such_format(".txt, .csv, .parquet or .json")),
     };
     options.output.emit(&bytes)?;
+    if format != ResultFormat::Text {
+        answer.notes().iter().for_each(|note| ui.note(note));
+    }
     Ok(Exit::Done)
 }
 
 /// The fabric is one of the library, or else one on disk.
-fn answer(options: &Find, library: &LibraryFile, bounds: Option<Bounds>, ui: &Ui) -> Result<Answer, Failure> {
-    let like = options.like.clone().map(Like::Named);
-    let question = Question { like, bounds, count: options.count };
+fn answer(options: &Find, library: &LibraryFile, question: Question, ui: &Ui) -> Result<Answer, Failure> {
     match (library.find(&question), &options.like) {
         (Err(LibraryError::Unknown { .. }), Some(path)) if files::exists(Path::new(path)) => {
             let like = Some(Like::Rows(rows(Path::new(path), options, ui)?));

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::library::Axis;
-use crate::report::arrow_text::Records;
+use crate::kes::ValueStatus;
+use crate::library::{Answer, Axis, NoSuchText, Shelf};
+use crate::report::arrow_text::{Records, units};
 
 /// `kesf.found/1`, of `kesf library find`: fabrics of a library.
 #[derive(Debug, Serialize)]
@@ -24,9 +25,38 @@ pub struct FoundDocument<'a> {
     pub space: &'a [Axis],
     /// Units of the columns that have one throughout.
     pub units: BTreeMap<String, String>,
+    /// How many fabrics the question holds for; a limit (`-n`) may leave fewer here.
+    pub total: usize,
+    /// How many share too few parameters with the one that is asked about to be compared.
+    pub apart: usize,
+    /// Values of the fabric that is asked about that are compared and were not plainly measured, by their columns.
+    pub like_status: &'a BTreeMap<String, ValueStatus>,
+    /// How many fabrics have no value in a column of the bounds, by its name: they are not within bounds on it.
+    pub without_value: &'a BTreeMap<String, usize>,
+    /// Texts of the bounds that no fabric has.
+    pub no_such_text: &'a [NoSuchText],
     /// A row each, the nearest first.
     #[cfg_attr(test, schemars(with = "Vec<BTreeMap<String, crate::report::arrow_text::Cell>>"))]
     pub fabrics: Records<'a>,
+}
+
+impl<'a> FoundDocument<'a> {
+    /// Of an answer and what was asked.
+    pub fn new(like: Option<&'a str>, bounds: Option<&'a str>, answer: &'a Answer) -> Self {
+        Self {
+            schema: "kesf.found/1",
+            like,
+            bounds,
+            space: &answer.axes,
+            units: units(&answer.table),
+            total: answer.total(),
+            apart: answer.apart,
+            like_status: &answer.like_status,
+            without_value: &answer.without_value,
+            no_such_text: &answer.no_such_text,
+            fabrics: Records(std::slice::from_ref(&answer.table)),
+        }
+    }
 }
 
 /// `kesf.library/1`, of `kesf library build`.
@@ -40,12 +70,16 @@ pub struct LibraryDocument {
     pub output: String,
     /// How many it has.
     pub fabrics: usize,
+    /// Fabrics of the results of which no value is in the library.
+    #[serde(default)]
+    pub left_out: Vec<String>,
 }
 
 impl LibraryDocument {
     /// Of a library that was written.
-    pub fn new(output: String, fabrics: usize) -> Self {
-        Self { schema: "kesf.library/1".into(), output, fabrics }
+    pub fn new(output: String, shelf: &Shelf) -> Self {
+        let left_out = shelf.left_out().into_iter().map(String::from).collect();
+        Self { schema: "kesf.library/1".into(), output, fabrics: shelf.len(), left_out }
     }
 }
 

@@ -66,9 +66,16 @@ fn meant(message: &str) -> Option<&str> {
         return None;
     }
     let mut words = message.split('`').skip(1).step_by(2);
-    let found = words.next()?.to_lowercase();
-    let nearest = words.max_by(|a, b| alike(&found, a).total_cmp(&alike(&found, b)))?;
-    (alike(&found, nearest) >= ALIKE).then_some(nearest)
+    let found = words.next()?;
+    nearest(found, words)
+}
+
+/// The known word that another is nearest to, if it is near; capitals count for nothing.
+pub(crate) fn nearest<'w>(found: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
+    let found = found.to_lowercase();
+    let known = known.into_iter().map(|word| (alike(&found, &word.to_lowercase()), word));
+    let (likeness, word) = known.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (likeness >= ALIKE).then_some(word)
 }
 
 #[cfg(test)]

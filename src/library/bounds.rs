@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 
 use super::error::LibraryError;
 use super::grammar::{self, Expression, ExpressionKind, Operator};
+use super::space::is_of_status;
+use crate::finding::nearest;
 use arrow_array::cast::AsArray;
 use arrow_array::types::Float64Type;
 use arrow_array::{Array, RecordBatch};
@@ -20,6 +22,8 @@ const MOST: usize = 4096;
 pub struct Bounds {
     root: Node,
     columns: BTreeSet<String>,
+    /// Columns of text, and what they are compared with.
+    texts: BTreeSet<(String, String)>,
 }
 
 /// A part of bounds.
@@ -71,16 +75,21 @@ impl Bounds {
         if text.len() > MOST {
             return Err(bounds(&format!("{} bytes are more than {MOST}", text.len()), 0, EXAMPLE.into()));
         }
-        let mut reader = Reader { text, schema, columns: BTreeSet::new() };
+        let mut reader = Reader { text, schema, columns: BTreeSet::new(), texts: BTreeSet::new() };
         let tree = grammar::expression(text)
             .map_err(|(problem, at)| reader.refused(&problem, at, &with_what_is_known()))?;
         let root = reader.wanted(&tree, Kind::Truth)?;
-        Ok(Self { root, columns: reader.columns })
+        Ok(Self { root, columns: reader.columns, texts: reader.texts })
     }
 
     /// Names of the columns that they speak of.
     pub fn columns(&self) -> impl Iterator<Item = &str> {
         self.columns.iter().map(String::as_str)
+    }
+
+    /// Columns of text, each with a text that it is to be, or not to be.
+    pub(super) fn texts(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.texts.iter().map(|(column, text)| (column.as_str(), text.as_str()))
     }
 
     /// Whether a row of a table that has these columns is within them; one of which it is not known is not.
@@ -99,11 +108,27 @@ fn with_what_is_known() -> String {
     )
 }
 
+/// The columns of a library, and the one that was probably meant.
+fn columns_there_are(name: &str, schema: &Schema) -> String {
+    let names: Vec<&str> = schema.fields().iter().map(|field| field.name().as_str()).collect();
+    let (statuses, values): (Vec<&str>, Vec<&str>) =
+        names.iter().copied().partition(|name| is_of_status(name));
+    let mut there_are = format!("there are {}", values.join(", "));
+    if let Some(status) = statuses.first() {
+        there_are += &format!("; and the status of each value, such as {status}");
+    }
+    match nearest(name, names) {
+        Some(meant) => format!("{there_are}; did you mean `{meant}`?"),
+        None => there_are,
+    }
+}
+
 /// What makes bounds of an expression.
 struct Reader<'s> {
     text: &'s str,
     schema: &'s Schema,
     columns: BTreeSet<String>,
+    texts: BTreeSet<(String, String)>,
 }
 
 impl Reader<'_> {
@@ -173,13 +198,20 @@ impl Reader<'_> {
             let problem = format!("`{}` is no value that can be compared", &self.text[left.span.clone()]);
             return Err(self.refused(&problem, left.span.start, &with_what_is_known()));
         }
-        Ok(Node::Compare(operator, Box::new([node, self.wanted(right, kind)?])))
+        let sides = [node, self.wanted(right, kind)?];
+        if let (
+            [Node::Column(column, _), Node::Text(text)] | [Node::Text(text), Node::Column(column, _)],
+            true,
+        ) = (&sides, matches!(operator, Operator::Equal | Operator::Different))
+        {
+            self.texts.insert((column.clone(), text.clone()));
+        }
+        Ok(Node::Compare(operator, Box::new(sides)))
     }
 
     fn column(&mut self, name: &str, at: usize) -> Result<(Node, Kind), LibraryError> {
         let Ok(field) = self.schema.field_with_name(name) else {
-            let names: Vec<&str> = self.schema.fields().iter().map(|field| field.name().as_str()).collect();
-            let cure = format!("there are {}", names.join(", "));
+            let cure = columns_there_are(name, self.schema);
             return Err(self.refused(&format!("there is no column `{name}`"), at, &cure));
         };
         let kind = if *field.data_type() == DataType::Utf8 { Kind::Text } else { Kind::Number };
@@ -298,6 +330,19 @@ mod tests {
             let bounds = Bounds::parse(text, &table.schema()).unwrap();
             assert_eq!([0, 1, 2].map(|row| bounds.hold(&table, row)), expected, "{text}");
         }
+    }
+
+    #[test]
+    fn the_column_that_was_meant_is_told_and_texts_are_known() {
+        let schema = table().schema();
+        let said = |text: &str| Bounds::parse(text, &schema).unwrap_err().to_string();
+        assert!(said("2hb_warp < 1").ends_with("did you mean `2HB_warp`?"), "{}", said("2hb_warp < 1"));
+        assert!(said("Thickness < 1").ends_with("did you mean `thickness`?"));
+        assert!(said("drapability < 1").ends_with("there are fabric, thickness, 2HB_warp"));
+        let bounds = "fabric in ('a', 'x') and not 'b' = fabric and fabric > 'c' and thickness < 1";
+        let bounds = Bounds::parse(bounds, &schema).unwrap();
+        let texts: Vec<_> = bounds.texts().collect();
+        assert_eq!(texts, [("fabric", "a"), ("fabric", "b"), ("fabric", "x")]);
     }
 
     #[test]

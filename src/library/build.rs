@@ -1,6 +1,6 @@
 //! A library of results.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,12 +11,15 @@ use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch, StringArray};
 use arrow_schema::{DataType, Field, Schema};
 
 use super::error::LibraryError;
-use super::space::column;
-use crate::kes::{Direction, Parameter};
+use super::file::LAYOUT;
+use super::space::{column, status_column};
+use crate::kes::{Direction, Parameter, ValueStatus};
 use crate::parts::{Table, merge_folder};
 use crate::platform::files;
 use crate::report::arrow::{Metadata, UNIT, read, write_pieces};
+use crate::report::number::counted;
 use crate::report::table::{FabricRow, TableError, UnitSystem, in_unit};
+use crate::report::write::refuse_unfinished;
 use crate::results::Failure;
 
 /// Names that people use, and what they stand for.
@@ -27,6 +30,9 @@ const OF_RUN: [&str; 5] = ["fabric", "parameter", "direction", "mean", "unit"];
 
 /// Rows of a row group: what an answer reads at once.
 const GROUP: usize = 1 << 16;
+
+/// Fabrics without values that are named; of others only the number is told.
+const NAMED: usize = 3;
 
 /// Results that are on disk: a folder of `kesf run`, a folder of its shards, a part, or a merged table.
 #[derive(Clone, Debug)]
@@ -44,6 +50,8 @@ pub struct Shelf {
     columns: BTreeMap<Order, Filled>,
     /// What was added, for messages.
     results: Vec<String>,
+    /// Fabrics of which there is a row without a value that a library has.
+    without: BTreeSet<String>,
 }
 
 /// Place of a column among the others: parameter, name of a modulus, direction.
@@ -55,6 +63,8 @@ struct Filled {
     unit: &'static str,
     /// Not a number where there is none.
     values: Vec<f64>,
+    /// How each of them was had.
+    statuses: Vec<ValueStatus>,
 }
 
 impl Shelf {
@@ -89,9 +99,11 @@ impl Shelf {
         self.results.push(name.to_string());
         let number = self.results.len() - 1;
         for row in rows {
-            let Some(value) = row.mean else { continue };
+            let Some((value, (order, (unit, factor), si))) = row.mean.zip(place_of(row)) else {
+                self.without.insert(row.fabric.clone());
+                continue;
+            };
             let refused = |problem: String| LibraryError::Results { path: path.to_path_buf(), problem };
-            let Some((order, (unit, factor), si)) = place_of(row) else { continue };
             if row.unit != si {
                 let (fabric, unit) = (&row.fabric, &row.unit);
                 return Err(refused(format!(
@@ -106,9 +118,14 @@ impl Shelf {
                 name: name(),
                 unit,
                 values: Vec::new(),
+                statuses: Vec::new(),
             });
-            filled.values.resize(filled.values.len().max(at + 1), f64::NAN);
+            let length = filled.values.len().max(at + 1);
+            filled.values.resize(length, f64::NAN);
             filled.values[at] = in_unit(value, factor);
+            filled.statuses.resize(length, ValueStatus::Measured);
+            // Results of early versions do not say it, and those of today say it of every value.
+            filled.statuses[at] = ValueStatus::from_name(&row.status).unwrap_or_default();
         }
         Ok(())
     }
@@ -148,6 +165,26 @@ impl Shelf {
         self.names.is_empty()
     }
 
+    /// Names of the fabrics of the results of which no value is in the library, in their order.
+    pub fn left_out(&self) -> Vec<&str> {
+        let names = self.without.iter().filter(|name| !name.is_empty() && !self.fabrics.contains_key(*name));
+        names.map(String::as_str).collect()
+    }
+
+    /// How many fabrics there are, and which are left out.
+    pub fn sentence(&self) -> String {
+        let (fabrics, left_out) = (counted(self.len(), "fabric"), self.left_out());
+        let named = left_out[..left_out.len().min(NAMED)].join(", ");
+        match left_out.len() {
+            0 => fabrics,
+            1 => format!("{fabrics}; {named} is left out, as it has no KES value"),
+            n @ 2..=NAMED => format!("{fabrics}; {n} without KES values are left out: {named}"),
+            n => {
+                format!("{fabrics}; {n} without KES values are left out: {named} and {} more", n - NAMED)
+            }
+        }
+    }
+
     /// The table, in order of names.
     ///
     /// # Errors
@@ -165,10 +202,17 @@ impl Shelf {
             let value = |at: &usize| filled.values.get(*at).copied().filter(|value| !value.is_nan());
             let array: ArrayRef = Arc::new(order.iter().map(value).collect::<Float64Array>());
             let metadata = Metadata::from([(UNIT.to_string(), filled.unit.to_string())]);
+            let statuses: StringArray = order
+                .iter()
+                .enumerate()
+                .map(|(row, at)| array.is_valid(row).then(|| filled.statuses[*at].name()))
+                .collect();
+            let statuses: ArrayRef = Arc::new(statuses);
             let named = NAMES.iter().filter(|(_, symbol)| *symbol == filled.name).map(|(name, _)| *name);
             for name in named.chain([filled.name.as_str()]) {
                 fields.push(Field::new(name, DataType::Float64, true).with_metadata(metadata.clone()));
-                arrays.push(Arc::clone(&array));
+                fields.push(Field::new(status_column(name), DataType::Utf8, true));
+                arrays.extend([Arc::clone(&array), Arc::clone(&statuses)]);
             }
         }
         let origins: StringArray = order.iter().map(|at| self.origins[*at].as_deref()).collect();
@@ -184,7 +228,7 @@ impl Shelf {
     /// Those of [`table`](Self::table).
     pub fn parquet(&self) -> Result<Vec<u8>, Failure> {
         let table = self.table()?;
-        let metadata = [("kesf.library", "1"), ("kesf.version", env!("CARGO_PKG_VERSION"))];
+        let metadata = [("kesf.library", LAYOUT), ("kesf.version", env!("CARGO_PKG_VERSION"))];
         Ok(write_pieces(&table.schema(), [&table], GROUP, &metadata)?)
     }
 }
@@ -213,19 +257,22 @@ impl Stored {
         if !files::exists(path) {
             return Err(refused("there is no such file or folder".into()).into());
         }
+        refuse_unfinished(path)?;
         if files::is_file(&of_run[0]) {
             return Ok(rows_of_run(&of_run[0])?);
         }
         if files::is_file(&of_run[1]) {
             return Ok(rows_of_csv(&of_run[1])?);
         }
+        let mut rows = Vec::new();
         let pieces = if files::is_folder(path) {
-            merge_folder(path)?.table(Table::Results)?
+            let merged = merge_folder(path)?;
+            rows.extend(merged.table(Table::Failures)?.iter().flat_map(rows_without_value));
+            merged.table(Table::Results)?
         } else {
             let bytes = files::read(path).map_err(|e| refused(e.to_string()))?;
             vec![read(bytes.into()).map_err(|e| refused(e.to_string()))?.1]
         };
-        let mut rows = Vec::new();
         for piece in &pieces {
             rows.extend(
                 rows_of_results(piece).map_err(|name| refused(format!("there is no column `{name}`")))?,
@@ -268,8 +315,15 @@ fn rows_of_results(table: &RecordBatch) -> Result<Vec<FabricRow>, &'static str> 
     Ok(rows.into_iter().enumerate().filter(|(at, _)| cases.is_null(*at)).map(|(_, row)| row).collect())
 }
 
-/// Rows of columns: fabric, parameter, direction, mean and unit, and the origin where there is that column; the name of
-/// one that is missing.
+/// Fabrics of a table of failures. They may have values all the same, if it was a case that failed.
+fn rows_without_value(failures: &RecordBatch) -> Vec<FabricRow> {
+    let fabrics = failures.column_by_name("fabric").and_then(|column| column.as_string_opt::<i32>());
+    let names = fabrics.into_iter().flat_map(|names| names.iter().flatten());
+    names.map(|name| FabricRow { fabric: name.into(), ..FabricRow::default() }).collect()
+}
+
+/// Rows of columns: fabric, parameter, direction, mean and unit, and status and origin where there are such columns; the
+/// name of one that is missing.
 fn rows(table: &RecordBatch, names: [&'static str; 5]) -> Result<Vec<FabricRow>, &'static str> {
     let text =
         |name: &'static str| table.column_by_name(name).and_then(|c| c.as_string_opt::<i32>()).ok_or(name);
@@ -277,13 +331,16 @@ fn rows(table: &RecordBatch, names: [&'static str; 5]) -> Result<Vec<FabricRow>,
     let (fabric, parameter, direction, unit) = (fabric?, parameter?, direction?, unit?);
     let mean =
         table.column_by_name(names[3]).and_then(|c| c.as_primitive_opt::<Float64Type>()).ok_or(names[3])?;
-    let origins = text("origin").ok();
+    let [statuses, origins] = ["status", "origin"].map(|name| text(name).ok());
     let row = |at: usize| FabricRow {
         fabric: fabric.value(at).into(),
         parameter: parameter.value(at).into(),
         direction: direction.is_valid(at).then(|| direction.value(at).into()),
         mean: mean.is_valid(at).then(|| mean.value(at)),
         unit: unit.value(at).into(),
+        status: statuses
+            .filter(|column| column.is_valid(at))
+            .map_or_else(String::new, |column| column.value(at).into()),
         origin: origins.filter(|column| column.is_valid(at)).map(|column| column.value(at).into()),
         ..FabricRow::default()
     };

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::finding::{Place, errors, path_as_text};
+use crate::report::number::counted;
 
 errors! {
     /// Why there is no library, or no answer.
@@ -18,7 +19,7 @@ errors! {
         } at Place::file(path), = "these are no results that a library can be made of: {problem}"
             => "name a folder of `kesf run` or of its shards, a part, or a table of `kesf merge`";
         /// O069: no fabric in them.
-        "O069" Empty = "there is no fabric in the results"
+        "O069" Empty = "there is no fabric with KES values in the results"
             => "name folders of results, as in `kesf library build library.parquet results`";
         /// O050: a library is Parquet, whatever its name.
         "O050" Ending {
@@ -46,6 +47,13 @@ errors! {
             problem: String,
         } at Place::file(path), = "the library cannot be read: {problem}"
             => "make it with `kesf library build`";
+        /// O070: of another version of this program.
+        "O070" Layout {
+            /// The file.
+            #[serde(serialize_with = "path_as_text")]
+            path: PathBuf,
+        } at Place::file(path), = "another version of kesf made this library, and it does not say the status of its values as this one needs it"
+            => "build it again with `kesf library build`";
         /// O071: bounds that are not understood.
         "O071" Bounds {
             /// What was found.
@@ -65,9 +73,12 @@ errors! {
         "O072" Apart {
             /// How many parameters the fabric and the library share.
             shared: usize,
+            /// In how many of these the fabrics of the library differ: others say nothing of likeness.
+            differing: usize,
             /// How many are needed.
             needed: usize,
-        } = "the fabric and the library share {shared} parameters, and at least {needed} are needed"
+        } = "the fabric and the library share {}, and the fabrics of the library differ in {differing} of these; they must differ in at least {needed}",
+            counted(*shared, "parameter")
             => "measure more of it, or give bounds with --where instead";
     }
 }

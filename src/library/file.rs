@@ -13,6 +13,9 @@ use super::error::LibraryError;
 use crate::platform::{files, guarded};
 use crate::report::arrow::DAMAGED;
 
+/// Which columns a library has: those of 2 have the status of every value, which those of 1 lack.
+pub(super) const LAYOUT: &str = "2";
+
 /// Rows that are in memory at once.
 const PIECE: usize = 1 << 13;
 
@@ -31,8 +34,12 @@ impl LibraryFile {
     pub fn open(path: &Path) -> Result<Self, LibraryError> {
         let builder = builder(path)?;
         let schema = builder.schema().clone();
-        if !schema.metadata.contains_key("kesf.library") || schema.field_with_name("fabric").is_err() {
+        let layout = schema.metadata.get("kesf.library").map(String::as_str);
+        if layout.is_none() || schema.field_with_name("fabric").is_err() {
             return Err(broken(path, "it is another table"));
+        }
+        if layout != Some(LAYOUT) {
+            return Err(LibraryError::Layout { path: path.to_path_buf() });
         }
         Ok(Self { path: path.to_path_buf(), schema })
     }

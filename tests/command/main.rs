@@ -9,6 +9,7 @@ mod export;
 #[expect(dead_code, reason = "one picture is enough here")]
 mod generator;
 mod inputs;
+mod library;
 mod parts;
 mod recorded;
 mod safe;
