@@ -225,12 +225,12 @@ pub enum Results<'py> {
     Path(PathBuf),
 }
 
-/// The file of a library, and how many fabrics it has.
+/// The file of a library, how many fabrics it has, and the names of those that have no value.
 #[pyfunction]
 pub fn library_build<'py>(
     py: Python<'py>,
     results: Vec<Results<'py>>,
-) -> PyResult<(Bound<'py, PyBytes>, usize)> {
+) -> PyResult<(Bound<'py, PyBytes>, usize, Vec<String>)> {
     let mut shelf = Shelf::default();
     for one in results {
         let added = match one {
@@ -240,21 +240,23 @@ pub fn library_build<'py>(
         added.or_raise(py)?;
     }
     let bytes = shelf.parquet().or_raise(py)?;
-    Ok((PyBytes::new(py, &bytes), shelf.len()))
+    let left_out = shelf.left_out().into_iter().map(String::from).collect();
+    Ok((PyBytes::new(py, &bytes), shelf.len(), left_out))
 }
 
-/// The fabrics of a library within bounds; those most like a fabric of it, or one of a table in SI, first. None if the
-/// fabric that is named is not in it.
+/// The fabrics of a library within bounds, and what speaks against the answer; those most like a fabric of it, or one of
+/// a table in SI, first. None if the fabric that is named is not in it.
 #[pyfunction]
-#[pyo3(signature = (library, name=None, like=None, bounds=None, count=10))]
+#[pyo3(signature = (library, name=None, like=None, bounds=None, count=None))]
 pub fn library_find(
     py: Python<'_>,
     library: PathBuf,
     name: Option<String>,
     like: Option<PyRef<'_, Table>>,
     bounds: Option<&str>,
-    count: usize,
-) -> PyResult<Option<Table>> {
+    count: Option<usize>,
+) -> PyResult<Option<(Table, Vec<String>)>> {
+    let count = Question::most(count, like.is_some() || name.is_some());
     let like = like.map(|table| Like::of_table(table.batch())).transpose().map_err(raised).or_raise(py)?;
     let answer = || -> Result<_, LibraryError> {
         let file = LibraryFile::open(&library)?;
@@ -262,7 +264,10 @@ pub fn library_find(
         file.find(&Question { like: like.or(name.map(Like::Named)), bounds, count })
     };
     match answer() {
-        Ok(answer) => Ok(Some(Table::new(answer.table))),
+        Ok(answer) => {
+            let warnings = answer.warnings();
+            Ok(Some((Table::new(answer.table), warnings)))
+        }
         Err(LibraryError::Unknown { .. }) => Ok(None),
         Err(error) => Err(raised(error)).or_raise(py),
     }

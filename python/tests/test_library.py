@@ -61,6 +61,10 @@ def test_a_library_has_a_row_a_fabric_in_kes_units(shipped: Path, sheets: kesf.S
     frame = polars.read_parquet(shipped)
     expected = polars.DataFrame(sheets.parameters("kes", wide=True)).sort("fabric")
     for name in expected.columns[1:]:
+        if name != "origin":
+            status = frame[f"{name}_status"]
+            assert set(status.drop_nulls()) <= {"measured", "inferred", "assumed", "doubtful"}
+            assert status.is_null().to_list() == frame[name].is_null().to_list()
         for found, value in zip(frame[name], expected[name], strict=True):
             assert (found is None) == (value is None)
             assert found in (None, value) or found == pytest.approx(value, rel=1e-11), name
@@ -100,6 +104,16 @@ def test_bounds_are_sql_in_kes_units(shipped: Path) -> None:
         with pytest.raises(kesf.KesfError, match="the bounds cannot be used") as refused:
             library.find(shipped, where=wrong)
         assert "thickness" in refused.value.message and refused.value.code == "O071"
+    # Without a limit all are there, and what bounds leave out is told.
+    assert library.find(shipped).height == 13 and library.find(shipped, n=2).height == 2
+    unknown = frame["LT_warp"].null_count()
+    assert unknown > 1
+    with pytest.warns(kesf.KesfWarning, match=f"{unknown} fabrics have no LT_warp"):
+        library.find(shipped, where="LT_warp > 0")
+    with pytest.warns(kesf.KesfWarning, match="no origin is `Measured`: it is published or synthetic"):
+        assert library.find(shipped, where="origin = 'Measured'").is_empty()
+    with pytest.raises(kesf.KesfError, match="did you mean `B_warp`"):
+        library.find(shipped, where="b_warp < 1")
     with pytest.raises(kesf.KesfError, match="the library cannot be read"):
         library.find(shipped.with_name("nowhere.parquet"))
 
@@ -107,18 +121,33 @@ def test_bounds_are_sql_in_kes_units(shipped: Path) -> None:
 def by_hand(frame: Any, a: str, b: str) -> tuple[float, int]:
     """The distance of two fabrics, written out once more."""
 
-    def coordinate(row: dict[str, Any], symbol: str, logarithm: bool) -> float | None:
-        values = [v for v in (row.get(f"{symbol}_warp"), row.get(f"{symbol}_weft")) if v is not None]
-        value = sum(values) / len(values) if values else row.get(symbol)
+    def scaled(value: float | None, logarithm: bool) -> float | None:
         if value is None or (logarithm and value <= 0.0):
             return None
         return math.log10(value) if logarithm else float(value)
+
+    def sides(row: dict[str, Any], symbol: str) -> tuple[float | None, float | None]:
+        return row.get(f"{symbol}_warp"), row.get(f"{symbol}_weft")
+
+    def coordinate(row: dict[str, Any], symbol: str, logarithm: bool) -> float | None:
+        values = [v for v in sides(row, symbol) if v is not None]
+        return scaled(sum(values) / len(values) if values else row.get(symbol), logarithm)
+
+    def pair(x: dict[str, Any], y: dict[str, Any], symbol: str) -> list[float | None]:
+        common = [k for k in (0, 1) if None not in (sides(x, symbol)[k], sides(y, symbol)[k])]
+        if len(common) == 1:
+            return [sides(x, symbol)[common[0]], sides(y, symbol)[common[0]]]
+        both = [None not in sides(row, symbol) for row in (x, y)]
+        return [
+            sum(v for v in sides(row, symbol) if v is not None) / 2 if whole else row.get(symbol)
+            for row, whole in zip((x, y), both, strict=True)
+        ]
 
     rows = {row["fabric"]: row for row in frame.to_dicts()}
     squares = []
     for symbol, logarithm in SPACE.items():
         known = [c for c in (coordinate(row, symbol, logarithm) for row in rows.values()) if c is not None]
-        x, y = (coordinate(rows[name], symbol, logarithm) for name in (a, b))
+        x, y = (scaled(value, logarithm) for value in pair(rows[a], rows[b], symbol))
         if x is None or y is None or len(known) < 2:
             continue
         mean = sum(known) / len(known)

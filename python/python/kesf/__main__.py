@@ -59,7 +59,7 @@ def _parser() -> argparse.ArgumentParser:
     find.add_argument("library", metavar="LIBRARY.parquet")
     find.add_argument("--like", metavar="FABRIC", help="name of a fabric in the library, or the path of one")
     find.add_argument("--where", metavar="SQL", help="such as 'thickness < 0.4 and B_warp < 0.08' (KES units)")
-    find.add_argument("-n", type=int, default=10, metavar="COUNT", help="how many at most [10]")
+    find.add_argument("-n", type=int, metavar="COUNT", help="how many at most [10 with --like, else all within bounds]")
     find.set_defaults(command=_find)
     return parser
 
