@@ -364,13 +364,13 @@ fn every_toml_file_that_is_shipped_is_as_its_schema_says() {
 /// A schema that is of something else says so.
 #[test]
 fn a_key_that_no_schema_knows_is_an_error() {
-    let known = json!({"schema": "kesf.library/1", "output": "a.parquet", "fabrics": 3, "failures": []});
+    let known = json!({"schema": "kesf.library/1", "output": "a.parquet", "fabrics": 3, "left_out": [], "failures": []});
     assert!(validator("library").is_valid(&known));
     for wrong in [
-        json!({"schema": "kesf.library/1", "output": "a.parquet", "fabrics": 3, "shelf": 1}),
-        json!({"schema": "kesf.library/1", "output": "a.parquet"}),
-        json!({"schema": "kesf.found/1", "output": "a.parquet", "fabrics": 3}),
-        json!({"schema": "kesf.library/1", "output": "a.parquet", "fabrics": "3"}),
+        json!({"schema": "kesf.library/1", "output": "a.parquet", "fabrics": 3, "left_out": [], "shelf": 1}),
+        json!({"schema": "kesf.library/1", "output": "a.parquet", "left_out": []}),
+        json!({"schema": "kesf.found/1", "output": "a.parquet", "fabrics": 3, "left_out": []}),
+        json!({"schema": "kesf.library/1", "output": "a.parquet", "fabrics": "3", "left_out": []}),
     ] {
         assert!(!validator("library").is_valid(&wrong), "{wrong}");
     }
