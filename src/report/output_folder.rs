@@ -193,10 +193,17 @@ impl OutputFolder {
     /// # Errors
     /// [`OutputError::Write`].
     pub fn finish(mut self) -> Result<Vec<String>, OutputError> {
-        self.settle()
+        let left_over = self.settle()?;
+        self.remove_journal();
+        Ok(left_over)
     }
 
-    /// Writes the manifest and takes the journal away.
+    /// Takes the journal away. What is left of it does no harm: the manifest knows the same.
+    fn remove_journal(&self) {
+        let _ = fs::remove_file(self.root.join(JOURNAL));
+    }
+
+    /// Writes the manifest.
     fn settle(&mut self) -> Result<Vec<String>, OutputError> {
         self.finished = true;
         let mut files = std::mem::take(&mut self.written().files);
@@ -221,17 +228,20 @@ impl OutputFolder {
             }
         }
         write_manifest(&self.root, &files)?;
-        // What is left of it does no harm: the manifest knows the same.
-        let _ = fs::remove_file(self.root.join(JOURNAL));
         Ok(left_over)
     }
 }
 
 impl Drop for OutputFolder {
-    /// A run that ends early has left files as well.
+    /// A run that ends early has left files as well, and tables that may not be theirs: of one that has changed something the
+    /// journal stays, which says so until the next run has ended.
     fn drop(&mut self) {
-        if !self.finished {
-            let _ = self.settle();
+        if self.finished {
+            return;
+        }
+        let has_changed = self.written().journal.metadata().is_ok_and(|journal| journal.len() > 0);
+        if self.settle().is_ok() && !has_changed {
+            self.remove_journal();
         }
     }
 }
@@ -359,6 +369,30 @@ mod tests {
         out.write("mine.csv", b"x").unwrap();
         out.write("poplin/sheet.json", b"x").unwrap();
         assert_eq!(fs::read(root.join("mine.csv")).unwrap(), b"x");
+    }
+
+    /// Tables are written last: those beside the files of a run that ended early are of the run before it.
+    #[test]
+    fn results_of_a_run_that_ended_early_are_refused_until_the_next_has_ended() {
+        use super::super::write::results_reader;
+        let folder = tempfile::tempdir().unwrap();
+        let first = OutputFolder::open(folder.path(), false).unwrap();
+        first.write("fabrics.csv", b"1").unwrap();
+        first.finish().unwrap();
+        // One that has changed nothing leaves them as they were.
+        let idle = OutputFolder::open(folder.path(), false).unwrap();
+        idle.write("fabrics.csv", b"1").unwrap();
+        drop(idle);
+        assert!(results_reader(folder.path()).is_ok());
+        let early = OutputFolder::open(folder.path(), false).unwrap();
+        early.write("a/sheet.json", b"{}").unwrap();
+        drop(early);
+        assert!(matches!(results_reader(folder.path()), Err(OutputError::Unfinished { .. })));
+        let last = OutputFolder::open(folder.path(), false).unwrap();
+        last.write("a/sheet.json", b"{}").unwrap();
+        last.write("fabrics.csv", b"2").unwrap();
+        assert!(last.finish().unwrap().is_empty());
+        assert!(results_reader(folder.path()).is_ok());
     }
 
     #[test]
