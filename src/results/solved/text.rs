@@ -33,7 +33,8 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
     // That a linear solve cannot hold for cloth is said once, however many fabrics there are.
     let beyond = solved.iter().filter(|(_, r)| r.status == Status::BeyondLinear).count();
     for (task, r) in solved {
-        let (fabric, mark) = (task.shown_fabric(), rests_on::mark(&all_grounds(task, r)));
+        let (fabric, grounds) = (task.shown_fabric(), all_grounds(task, r));
+        let mark = rests_on::mark(&grounds);
         for (k, f) in r.frequencies.iter().enumerate() {
             let elements = elements(&r.model);
             let half = half_width(r, &format!("frequency_{}", k + 1), 1.0);
@@ -49,7 +50,7 @@ pub(in crate::results) fn text(solved: &[(&Task, &CaseResult)], verbose: bool) -
             // The shape of a mode has no size.
             continue;
         }
-        let of_ratio = all_grounds(task, r).into_iter().chain(thickness_grounds(task)).collect::<Vec<_>>();
+        let of_ratio = [grounds, thickness_grounds(task)].concat();
         let ratio = significant(r.w_over_thickness) + &rests_on::mark(&of_ratio);
         let w = significant(1e3 * r.w_max) + &mark;
         let elements = elements(&r.model);
