@@ -33,7 +33,9 @@ pub use facts::{
 };
 pub use toml_file::Located;
 pub(crate) use toml_file::{Node, ReadLater, TomlError, TomlFile, position};
-pub(crate) use toml_words::{in_words, nearest, with_meant};
+#[cfg(feature = "parquet")]
+pub(crate) use toml_words::nearest;
+pub(crate) use toml_words::{in_words, with_meant};
 
 /// Where in an input something was found. Lines and columns count from 1; a column counts
 /// characters of the decoded line. 0 means "not applicable".
