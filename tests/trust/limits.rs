@@ -203,7 +203,8 @@ fn what_precedes_the_solution_is_within_the_limit_too() {
             "{what}: {said} {}",
             stderr(&done)
         );
-        assert!(user < 5.0, "{what}: {user} s of the processor");
+        // 2 to 5 s where this was written; a slow machine takes a few times as long, and what goes on for ever more.
+        assert!(user < 20.0, "{what}: {user} s of the processor");
     }
 }
 
