@@ -1,6 +1,7 @@
 //! `kesf.sheet/1`, `kesf.section/1`, `kesf.fabric/1` and our U3M materials read back: what other people keep of a fabric is enough to go on with.
 //!
-//! Curves and findings are not read, but for what is told of the document itself: they are those of measurements, which stay with the files that are named.
+//! Curves and findings are not read: they are those of measurements, which stay with the files that are named. What is told is of the
+//! document itself.
 
 use nalgebra::{Matrix2, Matrix3};
 use serde::Deserialize;

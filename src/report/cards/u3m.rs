@@ -148,8 +148,8 @@ fn tested(specimen: &SpecimenResult, climate: Option<&str>) -> Value {
     })
 }
 
-/// A sheet without the samples of its friction laws, which are in `sheet.json` with the digest of all, and without the paths of its files:
-/// the same fabric is the same material wherever its files lie.
+/// A sheet without the samples of its friction laws, which are in `sheet.json` with the digest of all, and without the paths of
+/// its files: the same fabric is the same material wherever its files lie.
 fn without_loops(mut sheet: Value) -> Value {
     for fabric in sheet["fabrics"].as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
         for key in ["friction", "friction_bands", "re_extracted", "digest"] {
