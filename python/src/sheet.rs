@@ -254,10 +254,18 @@ impl Sheet {
     }
 }
 
-/// Mean and unit of the parameters and directions of a sheet.
-type Cells = HashMap<(String, Option<String>), (Option<f64>, String)>;
+/// The values of a sheet by parameter and direction.
+type Cells = HashMap<(String, Option<String>), Cell>;
 
-/// Columns `B_warp`, `T0`, `E_secant_weft` ...: those that any of the sheets has; then the origin.
+/// A value of a sheet.
+struct Cell {
+    mean: Option<f64>,
+    unit: String,
+    status: String,
+}
+
+/// Columns `B_warp`, `T0`, `E_secant_weft` ...: those that any of the sheets has, each with its status behind it
+/// (`B_warp_status`), as in libraries of fabrics; then the origin.
 fn wide(sheets: &[&FabricSheet], units: UnitSystem) -> Vec<Column> {
     let name = sheets.iter().map(|s| Some(s.name.clone())).collect();
     let mut columns =
@@ -267,23 +275,31 @@ fn wide(sheets: &[&FabricSheet], units: UnitSystem) -> Vec<Column> {
         .map(|s| {
             fabric_rows(s, units)
                 .into_iter()
-                .map(|r| ((r.parameter, r.direction), (r.mean, r.unit)))
+                .map(|r| ((r.parameter, r.direction), Cell { mean: r.mean, unit: r.unit, status: r.status }))
                 .collect()
         })
         .collect();
     for (parameter, direction) in keys(sheets) {
         let key = (parameter, direction.map(|d| d.name().to_string()));
-        let cells: Vec<Option<f64>> = rows.iter().map(|row| row.get(&key).and_then(|cell| cell.0)).collect();
-        let Some(unit) = rows.iter().find_map(|row| row.get(&key)).map(|cell| cell.1.clone()) else {
+        let cells: Vec<Option<&Cell>> = rows.iter().map(|row| row.get(&key)).collect();
+        let Some(unit) = cells.iter().find_map(|cell| Some(cell.as_ref()?.unit.clone())) else {
             continue;
         };
         let words = [Some(key.0.replace(' ', "_")), key.1];
         let name = words.into_iter().flatten().collect::<Vec<_>>().join("_");
-        columns.push(Column {
+        let status = Column {
+            name: format!("{name}_status"),
+            values: Values::Text(
+                cells.iter().map(|cell| Some(cell.filter(|c| c.mean.is_some())?.status.clone())).collect(),
+            ),
+            metadata: HashMap::new(),
+        };
+        let mean = Column {
             name,
-            values: Values::Number(cells),
+            values: Values::Number(cells.iter().map(|cell| cell.as_ref()?.mean).collect()),
             metadata: HashMap::from([("unit".into(), unit)]),
-        });
+        };
+        columns.extend([mean, status]);
     }
     let origins = sheets.iter().map(|s| Some(s.info.origin.name().into())).collect();
     columns.push(Column { name: "origin".into(), values: Values::Text(origins), metadata: HashMap::new() });

@@ -60,14 +60,10 @@ pub fn run(options: &Options, ui: &Ui) -> Result<Exit, Failure> {
 fn setup(options: &Options) -> Result<DrapeSetup, Failure> {
     let method = match (&options.method, options.disc.zip(options.sheet)) {
         (Some(words), _) => DrapeMethod::read(words),
-        (None, Some((disc, sheet))) if disc < sheet => DrapeMethod::stated(0.01 * disc, 0.01 * sheet),
-        (None, Some((disc, sheet))) => {
-            return Err(Failure::new(
-                "O050",
-                format!("a disc of {disc} cm does not lie below a sheet of {sheet} cm"),
-            )
-            .hint("--disc is the smaller diameter"));
-        }
+        (None, Some((disc, sheet))) => DrapeMethod::hanging(0.01 * disc, 0.01 * sheet).ok_or_else(|| {
+            Failure::new("O050", format!("a sheet of {sheet} cm does not hang over a disc of {disc} cm"))
+                .hint("--disc is the smaller diameter; both are in cm, from 5 to 100")
+        })?,
         (None, None) => DrapeMethod::default(),
     };
     Ok(DrapeSetup { method, pixels_per_metre: options.pixels_per_cm.map(|n| 100.0 * n) })

@@ -10,7 +10,7 @@ use super::error::{ReadError, ReadProblem};
 use super::{FabricInfo, MeasuredResult, Origin};
 use crate::finding::{Finding, Place, ReadFact, in_words, position};
 use crate::platform::files;
-use crate::quantity::{ArealDensity, Length, Ratio};
+use crate::quantity::{ArealDensity, Length};
 
 /// `fabric.toml`: what people know of a fabric and no instrument writes.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -89,16 +89,8 @@ pub(super) fn read_fabric_file(
 
 /// What keeps a measured result from being compared with anything.
 fn unusable(result: &MeasuredResult) -> Option<ReadFact> {
-    let MeasuredResult { quantity, value, .. } = result;
-    let wrong = match quantity.as_str() {
-        "drape_coefficient" => value.parse::<Ratio>().err().map(|e| e.to_string()),
-        "bending_length" => value.parse::<Length>().err().map(|e| e.to_string()),
-        "drape_nodes" => value.parse::<f64>().err().map(|_| format!("`{value}` is not a number")),
-        _ => Some(
-            "only drape_coefficient, drape_nodes and bending_length are compared with predictions".into(),
-        ),
-    };
-    wrong.map(|reason| ReadFact::Unusable { names: vec![quantity.clone()], reason: Some(reason) })
+    let reason = result.checked().err()?;
+    Some(ReadFact::Unusable { names: vec![result.quantity.clone()], reason: Some(reason) })
 }
 
 /// Reads a dialect file.

@@ -166,14 +166,39 @@ pub struct MeasuredResult {
     pub direction: Option<Direction>,
 }
 
+/// Most folds that a drape may have: beyond it the number is a slip of the decimal point.
+const MOST_NODES: f64 = 60.0;
+
 impl MeasuredResult {
     /// The value in SI, and the SI unit; nothing of a quantity that is compared with nothing, or of a text that is no value.
     pub fn si(&self) -> Option<(f64, &'static str)> {
+        self.checked().ok()
+    }
+
+    /// The value in SI, and the SI unit; or why it is compared with nothing.
+    pub(super) fn checked(&self) -> Result<(f64, &'static str), String> {
+        let value = &self.value;
+        let within = |number: f64, [low, high]: [f64; 2], unit, what: &str| {
+            let is_within = (low..=high).contains(&number);
+            is_within.then_some((number, unit)).ok_or_else(|| format!("`{value}` is no {what}"))
+        };
         match self.quantity.as_str() {
-            "drape_coefficient" => Some((self.value.parse::<Ratio>().ok()?.si(), "1")),
-            "drape_nodes" => Some((self.value.parse().ok()?, "1")),
-            "bending_length" => Some((self.value.parse::<Length>().ok()?.si(), "m")),
-            _ => None,
+            "drape_coefficient" => {
+                let ratio = value.parse::<Ratio>().map_err(|e| e.to_string())?.si();
+                within(ratio, [0.0, 1.0], "1", "drape coefficient, which lies between 0 and 100 %")
+            }
+            "drape_nodes" => {
+                let count = value.parse().map_err(|_| format!("`{value}` is not a number"))?;
+                within(count, [0.0, MOST_NODES], "1", "number of folds of a drape")
+            }
+            "bending_length" => {
+                let length = value.parse::<Length>().map_err(|e| e.to_string())?.si();
+                within(length, [f64::MIN_POSITIVE, 1.0], "m", "bending length, which lies between 0 and 1 m")
+            }
+            _ => {
+                Err("only drape_coefficient, drape_nodes and bending_length are compared with predictions"
+                    .into())
+            }
         }
     }
 

@@ -23,6 +23,8 @@ pub const JIS: [f64; 2] = [0.254, 0.127];
 
 /// Sizes that can be those of a drape test (m).
 const POSSIBLE: [f64; 2] = [0.05, 1.0];
+/// The smallest sheet over its disc: what hangs over less has no folds.
+const LEAST_SHEET: f64 = 1.1;
 
 impl Default for DrapeMethod {
     /// The usual one, assumed: 30 cm on 18 cm.
@@ -39,25 +41,42 @@ impl DrapeMethod {
 
     /// Sizes that the words of a source state: `Cusick drape, 30 cm specimen on an 18 cm disc`, `24/18 cm`, `JIS L 1096`.
     ///
-    /// A sheet alone has the disc of its standard. The standards with several sheets, and words without a size, are
-    /// taken as 30 cm on 18 cm, assumed; so is what the words call assumed.
+    /// A sheet alone has the disc of its standard. The standards with several sheets, words without a size, and sizes of which
+    /// it is not clear which one is the disc ([`Self::in_words`]) are taken as 30 cm on 18 cm, assumed; so is what the
+    /// words call assumed.
     pub fn read(method: &str) -> Self {
+        Self::in_words(method).unwrap_or_default()
+    }
+
+    /// The sizes that the words state, be they assumed in these words; nothing without sizes, and nothing where more than two
+    /// are named, or two of which none is the disc of a standard and no word says which one it is.
+    pub fn in_words(method: &str) -> Option<Self> {
         let words = method.to_lowercase();
         let says = |word: &str| words.contains(word);
-        let sizes = lengths(&words);
-        let largest = sizes.iter().copied().fold(0.0, f64::max);
-        let smallest = sizes.iter().copied().fold(f64::INFINITY, f64::min);
+        let twice = if says("radius") || says("radii") { 2.0 } else { 1.0 };
+        let mut sizes: Vec<f64> = lengths(&words).into_iter().map(|length| twice * length).collect();
+        sizes.sort_by(f64::total_cmp);
+        sizes.dedup_by(|a, b| (*a - *b).abs() < 1e-3);
         let near = |a: f64, b: f64| (a - b).abs() < 5e-4;
         let is_jis = says("jis") || says("l 1096") || says("l1096");
-        let found = match sizes.len() {
-            0 if is_jis => Self::stated(JIS[1], JIS[0]),
-            0 => Self::default(),
-            _ if largest - smallest > 1e-3 => Self::stated(smallest, largest),
-            _ if near(largest, JIS[0]) => Self::stated(JIS[1], JIS[0]),
-            _ if CUSICK.iter().any(|sheet| near(*sheet, largest)) => Self::stated(CUSICK_DISC, largest),
-            _ => Self::default(),
+        let is_disc = |size: f64| {
+            [CUSICK_DISC, JIS[1]].iter().any(|disc| near(*disc, size))
+                || ["disc", "disk", "plate", "pedestal"].iter().any(|word| says(word))
         };
-        Self { assumed: found.assumed || says("assumed"), ..found }
+        let found = match sizes[..] {
+            [] if is_jis => Self::stated(JIS[1], JIS[0]),
+            [sheet] if near(sheet, JIS[0]) => Self::stated(JIS[1], JIS[0]),
+            [sheet] if CUSICK.iter().any(|known| near(*known, sheet)) => Self::stated(CUSICK_DISC, sheet),
+            [disc, sheet] if is_disc(disc) => Self::hanging(disc, sheet)?,
+            _ => return None,
+        };
+        Some(Self { assumed: says("assumed"), ..found })
+    }
+
+    /// Disc and sheet (m) that can be those of a drape test: 5 cm to 1 m, and a sheet that hangs over its disc.
+    pub fn hanging(disc: f64, sheet: f64) -> Option<Self> {
+        let can_be = POSSIBLE[0] <= disc && sheet <= POSSIBLE[1] && sheet >= LEAST_SHEET * disc;
+        can_be.then(|| Self::stated(disc, sheet))
     }
 
     /// The drape coefficient (0 to 1) of a shadow of this area (m²): (shadow - disc) / (sheet - disc), as BS 5058, ISO 9073-9
@@ -80,7 +99,7 @@ impl DrapeMethod {
     }
 }
 
-/// Numbers with a unit of length, and the one before a stroke (`24/18 cm`), in metres.
+/// Numbers with a unit of length, and the one before a stroke (`24/18 cm`) or a tolerance (`30.0±0.1 cm`), in metres.
 fn lengths(words: &str) -> Vec<f64> {
     let text: Vec<char> = words.chars().collect();
     let (mut found, mut waiting, mut i) = (Vec::new(), None, 0);
@@ -95,16 +114,24 @@ fn lengths(words: &str) -> Vec<f64> {
         i += length;
         let rest: String = text[i..].iter().collect();
         let rest = rest.trim_start_matches([' ', '-']);
-        let factor = [("cm", 1e-2), ("mm", 1e-3), ("in", 0.0254), ("\"", 0.0254), ("m ", 1.0)]
-            .iter()
-            .find(|(unit, _)| rest.starts_with(unit))
-            .map(|u| u.1);
+        let factor = [
+            ("cm", 1e-2),
+            ("centim", 1e-2),
+            ("mm", 1e-3),
+            ("millim", 1e-3),
+            ("in", 0.0254),
+            ("\"", 0.0254),
+            ("m ", 1.0),
+        ]
+        .iter()
+        .find(|(unit, _)| rest.starts_with(unit))
+        .map(|u| u.1);
         let before = waiting.take();
         match (number, factor) {
             (Some(number), Some(factor)) => {
                 found.extend(before.into_iter().chain([number]).map(|n| n * factor))
             }
-            (Some(number), None) if rest.starts_with(['/', '×', 'x']) => waiting = Some(number),
+            (Some(number), None) if rest.starts_with(['/', '×', 'x', '±', '+']) => waiting = Some(number),
             _ => {}
         }
     }
@@ -130,6 +157,14 @@ mod tests {
             ("25.4 cm on 12.7 cm", 0.254, 0.127, false),
             ("10 in sheet, 5 in disc", 0.254, 0.127, false),
             ("25,4 cm", 0.254, 0.127, false),
+            ("24 centimetres on 18 centimetres", 0.24, 0.18, false),
+            ("30.0±0.1 cm, 18 cm", 0.30, 0.18, false),
+            ("sheet radius 12 cm, disc radius 9 cm", 0.24, 0.18, false),
+            ("disk of 20 cm, specimen of 40 cm", 0.40, 0.20, false),
+            // Which one is the disc, or the sheet, is not said.
+            ("36 cm specimen, camera 60 cm above", 0.30, 0.18, true),
+            ("24 cm, 30 cm and 36 cm", 0.30, 0.18, true),
+            ("18 cm on 18.1 cm", 0.30, 0.18, true),
             ("", 0.30, 0.18, true),
         ] {
             let found = DrapeMethod::read(words);

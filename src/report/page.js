@@ -86,6 +86,11 @@ const report = (() => {
   const unit = (column) => (state.si ? column.si : column.kes);
   /** A value in the chosen unit, without the noise of the conversion. */
   const converted = (v, by) => (by === 1 ? v : Number((v / by).toPrecision(12)));
+  /** The status of what is less than measured, the most certain first. */
+  const MARKED = ["inferred", "assumed", "doubtful"];
+  const isMarked = (status) => MARKED.includes(status);
+  /** A fabric with what its data are: `poplin (synthetic)`. */
+  const withOrigin = (fabric) => fabric.name + (fabric.origin ? ` (${fabric.origin})` : "");
   const label = (column) => column.symbol + (column.direction ? " " + column.direction : "");
 
   // ---- the table of parameters --------------------------------------------------------------------------------
@@ -203,11 +208,17 @@ const report = (() => {
   /** What is shown as a table for a spreadsheet: means, tab-separated. */
   function copyText() {
     const columns = data.columns.map((column, i) => [column, i]).filter(([column]) => columnIsShown(column));
-    const head = ["fabric", "origin", ...columns.map(([c]) => label(c) + (unit(c) ? ` (${unit(c)})` : ""))];
-    const lines = chosenRows().map(({ fabric }) => [
+    const chosen = chosenRows();
+    // What a column holds beside measured values stands in a column of its own behind it, so that numbers stay numbers.
+    const marked = ([, i]) => chosen.some(({ fabric }) => isMarked(fabric.values[i]?.status));
+    const head = ["fabric", "origin", ...columns.flatMap(([c, i]) => [label(c) + (unit(c) ? ` (${unit(c)})` : ""), ...(marked([c, i]) ? [`${label(c)} status`] : [])])];
+    const lines = chosen.map(({ fabric }) => [
       fabric.name,
       fabric.origin,
-      ...columns.map(([c, i]) => (fabric.values[i] ? converted(fabric.values[i].mean, factor(c)) : "")),
+      ...columns.flatMap(([c, i]) => {
+        const value = fabric.values[i];
+        return [value ? converted(value.mean, factor(c)) : "", ...(marked([c, i]) ? [value?.status ?? ""] : [])];
+      }),
     ]);
     const cell = (v) => (typeof v === "number" ? String(v) : csvCell(v.replaceAll("\t", " ")));
     return [head, ...lines].map((line) => line.map(cell).join("\t")).join("\n") + "\n";
@@ -355,20 +366,25 @@ const report = (() => {
     return symbols.map((symbol) => {
       const columns = data.columns.map((c, i) => [c, i]).filter(([c]) => c.symbol === symbol);
       const place = (direction) => columns.find(([c]) => c.direction === direction)?.[1];
-      const mean = (fabric, direction) => fabric.values[place(direction)]?.mean;
+      /** What the value of a fabric rests on: both directions, or the fabric as a whole. */
+      const grounds = data.fabrics.map((fabric) => {
+        const both = ["warp", "weft"].map((direction) => fabric.values[place(direction)]);
+        return both.every(Boolean) ? both : [fabric.values[place(null)]].filter(Boolean);
+      });
       const given = data.population?.parameters.find((p) => p.symbol === symbol);
       const log = given ? given.log : columns[0][0].log;
-      const values = data.fabrics.map((fabric) => {
-        const [warp, weft] = [mean(fabric, "warp"), mean(fabric, "weft")];
-        const value = warp !== undefined && weft !== undefined ? (warp + weft) / 2 : mean(fabric, null);
-        if (value === undefined || (log && !(value > 0))) return undefined;
+      // A mean of two is as certain as the less certain of them.
+      const marks = grounds.map((parts) => MARKED[Math.max(...parts.map((part) => MARKED.indexOf(part.status)))]);
+      const values = grounds.map((parts) => {
+        const value = parts.reduce((sum, part) => sum + part.mean / parts.length, 0);
+        if (!parts.length || (log && !(value > 0))) return undefined;
         // In KES units, as the equations take them; the z does not depend on it.
         return log ? Math.log10(value / columns[0][0].factor) : value / columns[0][0].factor;
       });
       const name = (log ? "log " : "") + symbol;
       if (data.population) {
         const z = given ? values.map((v) => (v === undefined ? undefined : (v - given.mean) / given.sd)) : [];
-        return { name, n: given?.n, usable: Boolean(given), z, values };
+        return { name, n: given?.n, usable: Boolean(given), z, values, marks };
       }
       const known = values.filter((v) => v !== undefined);
       const n = known.length;
@@ -376,8 +392,19 @@ const report = (() => {
       const sd = Math.sqrt(known.reduce((a, b) => a + (b - average) ** 2, 0) / (n - 1));
       const usable = n >= LEAST_POPULATION && sd > 1e-9 * Math.abs(average || 1);
       const z = usable ? values.map((v) => (v === undefined ? undefined : (v - average) / sd)) : [];
-      return { name, n, usable, z, values };
+      return { name, n, usable, z, values, marks };
     });
+  }
+
+  /** A point of a chart of fabrics: hollow where its value is less than measured, which its title says as well. */
+  function point(attributes, title, mark) {
+    const kind = attributes.class + (mark ? " hollow" : "");
+    return shape("circle", { ...attributes, class: kind, r: 4 }, shape("title", {}, title + (mark ? `, ${mark}` : "")));
+  }
+  /** The key of hollow points, where there are any. */
+  function hollowKey(some) {
+    const sample = shape("svg", { viewBox: "0 0 32 10", "aria-hidden": "true" }, shape("circle", { class: "p0 hollow", cx: 16, cy: 5, r: 4 }));
+    return some ? [element("span", {}, sample, " hollow: inferred, assumed or doubtful")] : [];
   }
 
   /** The other fabrics by the root mean square difference of their standardised parameters. */
@@ -388,7 +415,8 @@ const report = (() => {
       const shared = parameters.filter((p) => p.z[i] !== undefined && p.z[fabric] !== undefined);
       if (shared.length < LEAST_SHARED) return;
       const sum = shared.reduce((a, p) => a + (p.z[i] - p.z[fabric]) ** 2, 0);
-      found.push({ name: other.name, distance: Math.sqrt(sum / shared.length), shared: shared.length });
+      const marked = shared.filter((p) => p.marks[i] || p.marks[fabric]).length;
+      found.push({ name: withOrigin(other), distance: Math.sqrt(sum / shared.length), shared: shared.length, marked });
     });
     return found.sort((a, b) => a.distance - b.distance);
   }
@@ -410,7 +438,7 @@ const report = (() => {
     const order = data.fabrics.map((_, i) => i).sort((a, b) => known(b) - known(a));
     const selects = [0, 1, 2, 3].map((k) => element("select", { "aria-label": `Fabric ${k + 1}`, change: show },
       element("option", { value: "" }, "–"),
-      ...data.fabrics.map((f, i) => element("option", { value: i, selected: k < 2 && order[k] === i }, f.name))));
+      ...data.fabrics.map((f, i) => element("option", { value: i, selected: k < 2 && order[k] === i }, withOrigin(f)))));
     const chart = element("div", { class: "chart" }), lists = element("div", {});
     place.append(element("p", {}, "The parameters of the hand equations (Kawabata 1980), mean of warp and weft, logarithms where the " +
         "equations take them, as standard deviations from a population. " + populationText(unusable) + " The nearest fabrics are looked for on this page."),
@@ -423,8 +451,13 @@ const report = (() => {
           (unusable ? ` Left out, as the population lacks them: ${unusable}.` : "");
       }
       const whole = data.fabrics_of_run ? ` of the ${data.fabrics_of_run} of the run` : "";
-      return `The population is the fabrics of this page (n = ${data.fabrics.length}${whole}; n of each parameter stands beside it), ` +
+      return `The population is the fabrics of this page (n = ${data.fabrics.length}${whole}: ${origins()}; n of each parameter stands beside it), ` +
         "no reference of a trade." + (unusable ? ` Left out, with fewer than ${LEAST_POPULATION} different values: ${unusable}.` : "");
+    }
+    /** How many fabrics have data of which origin: `2 published, 5 synthetic`. */
+    function origins() {
+      const all = data.fabrics.map((fabric) => fabric.origin || "of unknown origin");
+      return [...new Set(all)].sort().map((origin) => `${all.filter((o) => o === origin).length} ${origin}`).join(", ");
     }
     function show() {
       const chosen = selects.map((s) => s.value).map((v, k) => [v, k]).filter(([v]) => v !== "").map(([v, k]) => [Number(v), k]);
@@ -439,32 +472,33 @@ const report = (() => {
       }
       parameters.forEach((p, row) => parts.push(shape("text", { x: left - 8, y: y(row) + 4, "text-anchor": "end" }, named(p))));
       for (const [i, k] of chosen) {
-        const points = parameters.map((p, row) => [p.z[i], row]).filter(([z]) => z !== undefined).map(([z, row]) => [x(z), y(row), z]);
+        const points = parameters.map((p, row) => [p.z[i], row, p.marks[i]]).filter(([z]) => z !== undefined).map(([z, row, mark]) => [x(z), y(row), z, mark]);
         parts.push(shape("path", { class: `line p${k} ${["", "second", "third", ""][k]}`, d: "M" + points.map((p) => `${p[0]} ${p[1]}`).join("L") }));
-        for (const [px, py, z] of points) {
-          parts.push(shape("circle", { class: `p${k}`, cx: px, cy: py, r: 4 }, shape("title", {}, `${data.fabrics[i].name}: ${fixed(z, 2)} SD`)));
+        for (const [px, py, z, mark] of points) {
+          parts.push(point({ class: `p${k}`, cx: px, cy: py }, `${withOrigin(data.fabrics[i])}: ${fixed(z, 2)} SD`, mark));
         }
       }
       parts.push(shape("text", { class: "soft", x: (left + width - right) / 2, y: bottom + 34, "text-anchor": "middle" }, source ? `standard deviations from the mean of: ${source}` : "standard deviations from the mean of the population"));
-      const names = chosen.map(([i]) => data.fabrics[i].name).join(", ");
+      const names = chosen.map(([i]) => withOrigin(data.fabrics[i])).join(", ");
       const key = ([i, k]) => element("span", {}, shape("svg", { viewBox: "0 0 32 10", "aria-hidden": "true" },
-        shape("path", { class: `line p${k} ${["", "second", "third", ""][k]}`, d: "M0 5H32" })), " " + data.fabrics[i].name);
+        shape("path", { class: `line p${k} ${["", "second", "third", ""][k]}`, d: "M0 5H32" })), " " + withOrigin(data.fabrics[i]));
       const svg = shape("svg", { viewBox: `0 0 ${width} ${bottom + 42}`, role: "img", "aria-label": `Control chart of ${names}; the values are in the table below` }, ...parts);
-      chart.replaceChildren(svg, element("div", { class: "keys" }, ...chosen.map(key), svgButton(() => svg, () => "control chart")));
+      chart.replaceChildren(svg, element("div", { class: "keys" }, ...chosen.map(key), ...hollowKey(parameters.some((p) => chosen.some(([i]) => p.z[i] !== undefined && p.marks[i]))), svgButton(() => svg, () => "control chart")));
       lists.replaceChildren(valueTable(chosen), ...chosen.map(([i]) => nearestText(i)));
     }
     function valueTable(chosen) {
       const row = (p) => element("tr", {}, element("th", { scope: "row" }, p.name),
-        ...chosen.map(([i]) => element("td", { class: "number" }, p.z[i] === undefined ? "–" : fixed(p.z[i], 2))));
-      const head = ["parameter", ...chosen.map(([i]) => data.fabrics[i].name)].map((t) => element("th", { scope: "col" }, t));
+        ...chosen.map(([i]) => (p.z[i] === undefined ? element("td", { class: "number" }, "–") :
+          element("td", { class: `number ${p.marks[i] ?? ""}` }, fixed(p.z[i], 2), ...(p.marks[i] ? [element("small", {}, ` ${p.marks[i]}`)] : [])))));
+      const head = ["parameter", ...chosen.map(([i]) => withOrigin(data.fabrics[i]))].map((t) => element("th", { scope: "col" }, t));
       return element("details", {}, element("summary", {}, "Values of the chart"), element("div", { class: "wide", tabindex: "0", role: "region", "aria-label": "Values of the chart" },
         element("table", {}, element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...parameters.map(row)))));
     }
     function nearestText(i) {
       const found = nearest(parameters, i).slice(0, 3);
-      const list = found.map((f) => `${f.name} (${fixed(f.distance, 2)} SD over ${f.shared} parameters)`);
+      const list = found.map((f) => `${f.name} (${fixed(f.distance, 2)} SD over ${counted(f.shared, "parameter")}${f.marked ? `, ${f.marked} of them inferred, assumed or doubtful` : ""})`);
       const text = list.length ? list.join("; ") : `none shares ${LEAST_SHARED} parameters with it`;
-      return element("p", { class: "nearest" }, element("b", {}, `Nearest to ${data.fabrics[i].name}: `), text + ".");
+      return element("p", { class: "nearest" }, element("b", {}, `Nearest to ${withOrigin(data.fabrics[i])}: `), text + ".");
     }
     show();
   }
@@ -474,5 +508,5 @@ const report = (() => {
   window.addEventListener("hashchange", openLinked);
   openLinked();
   return { data, state, table, redraw, followers, fillers, element, shape, checkbox, button, svgButton, counted, breakable, fixed, significant, spread, factor, unit, label,
-    columnIsShown, chosenRows, ticks, extent, wide, tall, fitted, standardised };
+    columnIsShown, chosenRows, ticks, extent, wide, tall, fitted, standardised, point, hollowKey, withOrigin };
 })();

@@ -1,7 +1,7 @@
 
 // Correlation of parameters over the fabrics of the page: a matrix, and the points behind a pair of it.
 (() => {
-  const { data, element, shape, svgButton, fixed, ticks, extent, standardised, wide, tall, fitted } = report;
+  const { data, element, shape, svgButton, fixed, ticks, extent, standardised, wide, tall, fitted, point, hollowKey, withOrigin } = report;
   const LEAST = 5; // fabrics behind a coefficient
   const place = document.getElementById("correlation");
   if (!place) return;
@@ -84,14 +84,17 @@
     parts.push(shape("rect", { class: "axis", x: left, y: top, width: width - left - right, height: height - top - bottom }),
       shape("text", { class: "soft", x: (left + width - right) / 2, y: height - 8, "text-anchor": "middle" }, names[0]),
       shape("text", { class: "soft", transform: `translate(14 ${(top + height - bottom) / 2}) rotate(-90)`, "text-anchor": "middle" }, names[1]));
+    let hollow = 0;
     for (const [a, b, fabric] of points) {
       const name = data.fabrics[fabric].name;
+      const mark = [i, j].map((k) => parameters[k].marks[fabric] && `${parameters[k].name} ${parameters[k].marks[fabric]}`).filter(Boolean).join(", ");
+      if (mark) hollow += 1;
       const end = x(a) > 0.7 * width;
-      parts.push(shape("circle", { class: "p0", cx: x(a), cy: y(b), r: 4 }, shape("title", {}, name)));
+      parts.push(point({ class: "p0", cx: x(a), cy: y(b) }, withOrigin(data.fabrics[fabric]), mark));
       if (points.length <= 30) parts.push(shape("text", { class: "soft", x: x(a) + (end ? -7 : 7), y: y(b) + 4, "text-anchor": end ? "end" : "start" }, name));
     }
     const svg = shape("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `${names[1]} against ${names[0]} of ${n} fabrics: ${told}` }, ...parts);
-    chart.replaceChildren(svg, caption, element("div", { class: "keys" }, svgButton(() => svg, () => `${names[1]} against ${names[0]}`)));
+    chart.replaceChildren(svg, caption, element("div", { class: "keys" }, ...hollowKey(hollow), svgButton(() => svg, () => `${names[1]} against ${names[0]}`)));
   }
   draw();
   fitted(chart, draw);

@@ -1,5 +1,5 @@
 
-// Curves of tests: measured loops, windows of the fits, simulated curves; read by pointer, finger and keys.
+// Curves of tests: recorded loops, windows of the fits, simulated curves; read by pointer, finger and keys.
 (() => {
   const { data, state, redraw, fillers, element, shape, checkbox, button, svgButton, counted, fixed, significant, factor, unit, label, ticks, extent, wide, tall, fitted } = report;
   const FRAME = { left: 66, right: 12, top: 10, bottom: 46 };
@@ -11,7 +11,7 @@
     return all.filter((v) => v >= low && v <= high);
   }
 
-  /** A chart of one test: measured loops, windows of the fits, simulated curves; hover, zoom, switches. */
+  /** A chart of one test: recorded loops, windows of the fits, simulated curves; hover, zoom, switches. */
   class Chart {
     constructor(curves, fabric) {
       this.curves = curves;
@@ -58,7 +58,7 @@
         return value ? [`${label(column)} ${significant(value.mean / factor(column), 3)}${unit(column) ? " " + unit(column) : ""}`] : [];
       });
       return `${test} of ${this.fabric.name}${directions ? ", " + directions : ""}: ${axes[1].quantity} against ${axes[0].quantity}, ` +
-        `${range(ranges[0], axes[0])} and ${range(ranges[1], axes[1])}; ${counted(specimens.length, "measured specimen")}, ` +
+        `${range(ranges[0], axes[0])} and ${range(ranges[1], axes[1])}; ${counted(specimens.length, `${this.fabric.origin || "recorded"} specimen`)}, ` +
         `${counted(simulated.length, "simulated curve")}${values.length ? "; " + values.join(", ") : ""}. ` +
         "Arrow keys read values, plus and minus zoom, 0 resets.";
     }

@@ -43,6 +43,11 @@ impl Deflected {
         }
     }
 
+    /// The same under another name than that of its case.
+    pub fn named(self, name: String) -> Self {
+        Self { name, ..self }
+    }
+
     fn sheet(&self) -> DeflectedSheet<'_> {
         DeflectedSheet {
             name: self.name.clone(),

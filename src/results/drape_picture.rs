@@ -230,6 +230,10 @@ struct Measured {
 fn write_measured(document: &DrapeDocument, sink: &dyn Sink) -> Result<(), Failure> {
     for summary in document.summaries.iter().filter(|s| s.side.is_none()) {
         let results = drape_results(summary, &document.method);
+        // Where no picture counts, nothing was measured.
+        if results.is_empty() {
+            continue;
+        }
         let text = toml::to_string(&Measured { results }).map_err(|e| Failure::new("O057", e.to_string()))?;
         let text =
             format!("# Measured in pictures by `kesf drape-image`; lay it beside fabric.toml.\n{text}");
@@ -255,10 +259,11 @@ impl DrapePictures {
         for c in &self.document.captures {
             let [clear, all] = c.folds_band;
             let scale = c.scale.map(|s| s.source.text().to_string());
+            let mark = if c.left_out_for.is_empty() { "" } else { "?" };
             captures.row([
                 c.picture.clone(),
                 c.side.map_or("", ClothSide::name).into(),
-                c.coefficient.map_or("-".into(), |v| format!("{:.2}", 100.0 * v)),
+                c.coefficient.map_or("-".into(), |v| format!("{:.2}{mark}", 100.0 * v)),
                 c.folds.to_string(),
                 if clear == all { String::new() } else { format!("{clear} to {all}") },
                 c.harmonic.to_string(),
@@ -267,8 +272,9 @@ impl DrapePictures {
                 scale.unwrap_or_else(|| "unknown".into()),
             ]);
         }
-        let mut means = Columns::new(["test", "side", "coefficient (%)", "SD", "folds", "SD", "n"]);
-        for DrapeSummary { test, side, coefficient, folds } in &self.document.summaries {
+        let mut means =
+            Columns::new(["test", "side", "coefficient (%)", "SD", "folds", "SD", "n", "left out"]);
+        for DrapeSummary { test, side, coefficient, folds, left_out } in &self.document.summaries {
             let mean = |s: &Spread, factor: f64| format!("{:.2}", factor * s.mean);
             let sd = |s: &Spread, factor: f64| s.sd.map_or("-".into(), |sd| format!("{:.2}", factor * sd));
             means.row([
@@ -276,9 +282,10 @@ impl DrapePictures {
                 side.map_or("", ClothSide::name).into(),
                 coefficient.as_ref().map_or("-".into(), |c| mean(c, 100.0)),
                 coefficient.as_ref().map_or("-".into(), |c| sd(c, 100.0)),
-                mean(folds, 1.0),
-                sd(folds, 1.0),
-                folds.n.to_string(),
+                folds.as_ref().map_or("-".into(), |f| mean(f, 1.0)),
+                folds.as_ref().map_or("-".into(), |f| sd(f, 1.0)),
+                folds.as_ref().map_or(0, |f| f.n).to_string(),
+                left_out.to_string(),
             ]);
         }
         format!("{}\n{}", captures.text(), means.text())

@@ -13,9 +13,11 @@ use super::rests_on::{self, Ground};
 use super::sampled::{self, SamplingEntry};
 use super::solved::{ModelEntry, mesh_fields, resultants};
 use super::task::Task;
+use crate::case::Problem;
 use crate::constitutive::MeasuredInput;
 use crate::fields::warp_directions;
 use crate::finding::Finding;
+use crate::kes::DrapeMethod;
 use crate::law::Mode;
 use crate::quantity::significant;
 use crate::report::chart::{self, DrapePlot, ParityPoint};
@@ -26,9 +28,29 @@ use crate::study::{Drape, DrapeState, Faces, measured_drape};
 /// The chart of simulated against measured coefficients of all fabrics.
 const PARITY: &str = "drape_parity";
 
-/// The measured coefficient of the task's fabric (0 to 1) and its method.
-fn measured<'a>(task: &'a Task) -> Option<(f64, &'a str)> {
-    measured_drape(task.fabric?)
+/// The measured coefficient of the task's fabric (0 to 1), of disc and sheet as they were hung, and its method.
+fn measured<'a>(task: &'a Task, d: &Drape) -> Option<(f64, &'a str)> {
+    measured_drape(task.fabric?, "drape_coefficient", diameters(d))
+}
+
+/// Diameters of disc and sheet (m).
+fn diameters(d: &Drape) -> [f64; 2] {
+    [d.disc_radius, d.sheet_radius].map(|radius| 2.0 * radius)
+}
+
+/// The title of the case, and what was hung where that is not what it says.
+fn title(task: &Task, d: &Drape) -> String {
+    let [disc, sheet] = diameters(d);
+    let hung = DrapeMethod::stated(disc, sheet);
+    let title = &task.case.title;
+    match &task.case.problem {
+        Problem::Drape(problem)
+            if hung.differs(problem.ring.inner_diameter.si(), problem.ring.diameter.si()) =>
+        {
+            format!("{title}; hung: {}", hung.text())
+        }
+        _ => title.clone(),
+    }
 }
 
 fn percent(ratio: f64) -> String {
@@ -60,7 +82,7 @@ pub(super) fn table<'a, 'f: 'a, 'c: 'a>(
             law(task).into(),
             percent(s.coefficient) + &rests_on::mark(&grounds(task, &rests_on::known(task))),
             format!("{} to {}", percent(low), percent(high)),
-            measured(task).map_or("-".into(), |(m, _)| percent(m)),
+            measured(task, d).map_or("-".into(), |(m, _)| percent(m)),
             s.folds.count.to_string(),
             significant(1e3 * s.folds.amplitude),
             s.elements.to_string(),
@@ -99,6 +121,12 @@ struct DrapeResults {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 struct DrapeValues {
     law: Cow<'static, str>,
+    /// Diameter of the disc that the sheet hung on (m).
+    #[serde(default)]
+    disc_diameter: f64,
+    /// Diameter of the flat sheet that was hung (m): that of the case, or of the test of the fabric with `sizes = "measured"`.
+    #[serde(default)]
+    sheet_diameter: f64,
     /// Of the state of lowest energy on the finest mesh, 0 to 1.
     coefficient: f64,
     /// Least and greatest coefficient of the states whose energy is at most 2 % above the lowest, 5 % of a quick drape.
@@ -199,8 +227,11 @@ impl StateEntry {
 
 /// The entry of a drape.
 pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
+    let [disc_diameter, sheet_diameter] = diameters(d);
     let drape = DrapeValues {
         law: law(task).into(),
+        disc_diameter,
+        sheet_diameter,
         coefficient: d.finest.coefficient,
         band: d.band(),
         mean: d.mean(),
@@ -214,7 +245,8 @@ pub(super) fn entry(task: &Task, d: &Drape) -> DrapeEntry {
             .faces
             .as_ref()
             .map(|faces| FacesEntry { up: StateEntry::new(&faces.up), down: StateEntry::new(&faces.down) }),
-        measured: measured(task).map(|(value, method)| MeasuredDrape { value, method: method.to_string() }),
+        measured: measured(task, d)
+            .map(|(value, method)| MeasuredDrape { value, method: method.to_string() }),
         uncertainty: task.sampling().map(|s| SamplingEntry::ending_with(s, "")),
         finest: StateEntry::new(&d.finest),
         meshes: d.meshes.iter().map(StateEntry::new).collect(),
@@ -248,11 +280,9 @@ pub(super) fn grounds(task: &Task, inputs: &[MeasuredInput]) -> Vec<Ground> {
 /// the lowest energy, what it was before the sheet was shaken, and what it is with either face up.
 pub(super) fn rows(task: &Task, d: &Drape) -> Vec<PredictionRow> {
     let [low, high] = d.band();
-    let nodes = task.fabric.and_then(|sheet| {
-        let counted = sheet.info.results.iter().find(|r| r.quantity == "drape_nodes")?;
-        counted.value.parse::<f64>().ok()
-    });
-    let coefficient = measured(task).map(|(m, _)| m);
+    let nodes =
+        task.fabric.and_then(|sheet| measured_drape(sheet, "drape_nodes", diameters(d))).map(|(n, _)| n);
+    let coefficient = measured(task, d).map(|(m, _)| m);
     let mut rows = vec![
         row(task, "drape_coefficient", d.finest.coefficient, coefficient),
         row(task, "drape_coefficient_mean", d.mean(), None),
@@ -298,7 +328,7 @@ pub struct DrapePoint {
 
 /// The drape beside its measured coefficient (in %); none where none was measured.
 pub(super) fn point(task: &Task, d: &Drape) -> Option<DrapePoint> {
-    let (measured, _) = measured(task)?;
+    let (measured, _) = measured(task, d)?;
     let point = ParityPoint {
         label: task.fabric_name()?.into(),
         group: format!("{}, {}", law(task), task.origin()),
@@ -362,7 +392,7 @@ pub(crate) fn write_parity(folder: &Folder, points: &[DrapePoint]) -> Result<Opt
 pub(super) fn deflected(task: &Task, d: &Drape) -> Deflected {
     let nodes = d.solution.state.position.iter().zip(&d.model.mesh.nodes);
     let displacement = nodes.map(|(now, rest)| [now.x - rest.x, now.y - rest.y, now.z - rest.z]).collect();
-    Deflected::new(task, &d.model, displacement)
+    Deflected::new(task, &d.model, displacement).named(title(task, d))
 }
 
 /// What shape it is, in a line.
@@ -370,7 +400,7 @@ fn summary(task: &Task, d: &Drape) -> String {
     let s = &d.finest;
     format!(
         "{}, {}: drape coefficient {} %, {} folds; state of lowest energy of {}, {}",
-        task.case.title,
+        title(task, d),
         law(task),
         percent(s.coefficient),
         s.folds.count,
@@ -425,7 +455,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         let both = format!("{} %, {} %", percent(up.coefficient), percent(down.coefficient));
         values.push(("face up, face down".into(), both));
     }
-    if let Some((value, _)) = measured(task) {
+    if let Some((value, _)) = measured(task, d) {
         values.push(("measured".into(), format!("{} %", percent(value))));
     }
     values.extend([
@@ -435,7 +465,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         ("residual".to_string(), format!("{:.0e}", s.residual)),
     ]);
     DrapePlot {
-        title: task.case.title.clone(),
+        title: title(task, d),
         subtitle: format!(
             "{}; {}; state of lowest energy, {}",
             task.fabric_name().unwrap_or("section of the case"),
@@ -448,7 +478,7 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
         disc_radius: d.disc_radius,
         sheet_radius: d.sheet_radius,
         outline: &d.outline,
-        measured: measured(task).map(|(coefficient, _)| coefficient),
+        measured: measured(task, d).map(|(coefficient, _)| coefficient),
         values,
         remarks: (rests_on::warning(&grounds(task, &rests_on::known(task))).into_iter())
             .chain(d.findings.iter().map(|f| f.message()))

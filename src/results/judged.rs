@@ -2,10 +2,9 @@
 
 use super::outcome::Outcome;
 use super::rests_on::{self, DOUBTFUL, Ground};
+use super::solved;
 use super::task::Task;
-use super::{bent, draped, solved};
 use crate::characterise::ValueStatus;
-use crate::constitutive::MeasuredInput;
 use crate::finding::{Fact, Finding, StudyFact};
 use crate::instrument::{Direction, Parameter};
 use crate::report::table::PredictionRow;
@@ -22,7 +21,7 @@ pub(super) fn fill(rows: &mut [PredictionRow], task: &Task, outcome: &Outcome) {
     let inputs = rests_on::known(task);
     let quick = quick(&outcome.findings(task));
     for row in rows {
-        let grounds = grounds_of(task, outcome, &inputs, &row.quantity);
+        let grounds = outcome.grounds_of(task, &inputs, &row.quantity);
         row.inputs = (!inputs.is_empty()).then(|| rests_on::status(&grounds).name().to_string());
         row.status = word(outcome, &grounds, quick.is_some()).map(String::from);
         let both = is_of_both(task, row).then(|| "measured for warp and weft together".to_string());
@@ -39,16 +38,6 @@ fn is_of_both(task: &Task, row: &PredictionRow) -> bool {
     };
     let direction = Direction::ALL.into_iter().find(|d| d.name() == direction);
     Parameter::from_symbol(symbol).is_some_and(|parameter| task.is_of_both(parameter, direction))
-}
-
-/// What a quantity of an outcome rests on that is not to be relied on.
-fn grounds_of(task: &Task, outcome: &Outcome, inputs: &[MeasuredInput], quantity: &str) -> Vec<Ground> {
-    match outcome {
-        Outcome::Solved(result) => solved::grounds(result, inputs, quantity),
-        Outcome::Bent(result, _) => rests_on::grounds(inputs, &bent::shown_most(result, quantity)),
-        Outcome::Draped(_) => draped::grounds(task, inputs),
-        Outcome::Tested(_) => rests_on::grounds(inputs, quantity),
-    }
 }
 
 /// The word that weighs most; nothing where nothing speaks against the value.

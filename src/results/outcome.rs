@@ -18,6 +18,7 @@ use super::solved::{self, SolutionEntry};
 use super::task::Task;
 use super::tested::{self, TestEntry, Tested};
 use super::work;
+use crate::constitutive::MeasuredInput;
 use crate::fields::curvatures_moved;
 use crate::finding::Finding;
 use crate::quantity::significant;
@@ -210,6 +211,16 @@ impl Outcome {
             Self::Draped(_) => draped::grounds(task, &rests_on::known(task)),
             Self::Tested(tested) => rests_on::each_once(tested.iter().flat_map(|t| t.grounds.clone())),
             Self::Bent(result, _) => bent::all_grounds(task, result),
+        }
+    }
+
+    /// What one of its quantities rests on that is not to be relied on.
+    pub(super) fn grounds_of(&self, task: &Task, inputs: &[MeasuredInput], quantity: &str) -> Vec<Ground> {
+        match self {
+            Self::Solved(result) => solved::grounds(result, inputs, quantity),
+            Self::Draped(_) => draped::grounds(task, inputs),
+            Self::Tested(_) => rests_on::grounds(inputs, quantity),
+            Self::Bent(result, _) => rests_on::grounds(inputs, &bent::shown_most(result, quantity)),
         }
     }
 

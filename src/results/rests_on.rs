@@ -30,7 +30,7 @@ const SHOWS: f64 = 0.05;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Ground {
-    /// `measured` of what was measured, but of warp and weft together.
+    /// `measured` of what was measured, but of warp and weft together, or along one of them alone.
     pub(super) status: ValueStatus,
     /// `an assumed E`.
     pub(super) text: Cow<'static, str>,
@@ -90,7 +90,21 @@ pub(super) fn known(task: &Task) -> Vec<MeasuredInput> {
 pub(super) fn grounds(inputs: &[MeasuredInput], quantity: &str) -> Vec<Ground> {
     let (_, direction) = quantity.split_once(' ').unwrap_or_default();
     let symbols = symbols(quantity);
-    of_inputs(symbols.iter().flat_map(|symbol| along(inputs, symbol, direction)))
+    let mut grounds = of_inputs(symbols.iter().flat_map(|symbol| along(inputs, symbol, direction)));
+    if symbols.contains(&"G") {
+        grounds.extend(shear_of_the_other(inputs, direction));
+    }
+    grounds
+}
+
+/// `G of the warp alone`, for what is said of the weft: the plate has one shear modulus, be it measured along one direction.
+fn shear_of_the_other(inputs: &[MeasuredInput], direction: &str) -> Option<Ground> {
+    let mut measured = inputs.iter().filter_map(|input| input.name.strip_prefix("G "));
+    let only = measured.next().filter(|along| !direction.is_empty() && *along != direction)?;
+    measured
+        .next()
+        .is_none()
+        .then(|| Ground { status: ValueStatus::Measured, text: format!("G of the {only} alone").into() })
 }
 
 /// The same of results that rest on these constants, in every direction: `E`, `G`, `B` and `W`.
@@ -306,6 +320,18 @@ mod tests {
             joined(&of_symbols(&three, &["G", "B", "W"])),
             "an assumed G, an assumed B warp and an assumed areal density"
         );
+    }
+
+    #[test]
+    fn shear_of_one_direction_is_told_where_the_other_is_predicted() {
+        let warp = measured("G warp", ValueStatus::Measured);
+        let remark = |inputs: &[MeasuredInput], quantity: &str| said(inputs, quantity);
+        let one = [warp.clone()];
+        assert_eq!(remark(&one, "G weft"), "G of the warp alone");
+        assert_eq!(status(&grounds(&one, "G weft")), ValueStatus::Measured);
+        assert_eq!((remark(&one, "G warp"), remark(&one, "B weft")), (String::new(), String::new()));
+        let both = [warp, measured("G weft", ValueStatus::Measured)];
+        assert_eq!(remark(&both, "G weft"), "");
     }
 
     /// A sheet with tests of the warp alone: what is said of the weft rests on them.

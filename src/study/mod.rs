@@ -45,8 +45,7 @@ pub use build::section;
 pub use compare::{Comparison, compare_curves, measured_curve};
 pub use contact::ContactResult;
 pub use drape::{
-    Drape, DrapeState, Faces, Folds, as_measured, drape, drape_method, drape_stages, hang_by_face,
-    measured_drape,
+    Drape, DrapeState, Faces, Folds, as_measured, drape, drape_stages, hang_by_face, measured_drape,
 };
 pub use effort::within_limits;
 pub use history::History;

@@ -221,6 +221,11 @@ def taken_away(page, data):
     page.get_by_role("button", name="Copied").wait_for()
     copied = page.evaluate("navigator.clipboard.readText()").splitlines()
     check("copy takes a line a fabric", len(copied) == 15 and copied[0].startswith("fabric\torigin\t"), copied[:1])
+    heads = copied[0].split("\t")
+    told = {h.removesuffix(" status") for h in heads if h.endswith(" status")}
+    expected = {f"{c['symbol']} {c['direction'] or ''}".strip() for i, c in enumerate(data["columns"])
+                if any(f["values"].get(str(i), {}).get("status", "measured") != "measured" for f in data["fabrics"])}
+    check("and the status of what is not all measured", expected and told == expected, (told, expected))
 
 
 def taken_workbook(page):
@@ -262,7 +267,7 @@ def curves(page, data):
     frame.scroll_into_view_if_needed()
     told = frame.get_attribute("aria-label")
     check("a chart is told in numbers", re.search(
-        r"bending of poplin, warp and weft: Moment .* against Curvature .* 6 measured specimens, .* simulated curves?; B warp [\d.]+ gf", told), told)
+        r"bending of poplin, warp and weft: Moment .* against Curvature .* 6 synthetic specimens, .* simulated curves?; B warp [\d.]+ gf", told), told)
     box = frame.bounding_box()
     middle = (box["x"] + 0.55 * box["width"], box["y"] + 0.45 * box["height"])
     page.mouse.move(*middle)
@@ -324,9 +329,9 @@ def control_chart(page, data):
     text = place.inner_text()
     check("the population is named with its n", f"n = {len(data['fabrics'])}" in text, text[:300])
     check("two fabrics are compared at first", place.locator("path.line").count() >= 2)
-    place.get_by_label("Fabric 3").select_option(label="twill")
+    place.get_by_label("Fabric 3").select_option(label="twill (synthetic)")
     check("a third is added", place.locator(".keys span").count() == 3)
-    check("the nearest are told with distance", re.search(r"Nearest to twill: .*SD over \d+ parameters", place.inner_text()))
+    check("the nearest are told with distance", re.search(r"Nearest to twill \(synthetic\): .*SD over \d+ parameters", place.inner_text()))
     # The same by hand for T0, which every fabric has: z of log10 over the population.
     from math import log10
     from statistics import mean, stdev
@@ -336,6 +341,18 @@ def control_chart(page, data):
     place.locator("summary").click()
     row = place.locator("tr", has_text="log T0").inner_text().split()
     check("z is (x - mean) / SD of the logarithms", abs(float(row[-1].replace("−", "-")) - expected) < 0.006, (row, expected))
+    # A fabric with values that are not measured: as many points are hollow, and say why.
+    from collections import Counter
+    marks = lambda f: Counter(v["status"] for i, v in f["values"].items() if data["columns"][int(i)]["log"] is not None and v["status"] != "measured")
+    fabric = max(data["fabrics"], key=lambda f: sum(marks(f).values()))
+    check("a fabric has values that are not measured", marks(fabric), marks(fabric))
+    place.get_by_label("Fabric 4").select_option(label=f"{fabric['name']} ({fabric['origin']})")
+    titles = place.locator("svg[role=img] circle.hollow title").all_text_contents()
+    check("they are hollow and told", titles and all(re.search(r", (inferred|assumed|doubtful)$", t) for t in titles) and any(t.startswith(fabric["name"]) for t in titles), titles)
+    check("with their key", "hollow: inferred, assumed or doubtful" in place.locator(".keys").inner_text())
+    check("and marked in the table", place.locator("td.inferred, td.assumed, td.doubtful").count() == len(titles), len(titles))
+    check("solid points have no mark", not [t for t in place.locator("svg[role=img] circle:not(.hollow) title").all_text_contents() if not t.endswith(" SD")])
+    check("the origins of the population are told", f"{sum(f['origin'] == 'synthetic' for f in data['fabrics'])} synthetic" in text, text[:300])
 
 
 def turning(page, data):
@@ -606,7 +623,7 @@ def main(index, report, absent, given=None, library=None, pictures=None):
             check("a population that was given is named", f"given with the run: {source}" in place.inner_text(), place.inner_text()[:400])
             check("and at the axis of the chart", source in place.locator("svg text").last.text_content())
             column = str(next(i for i, c in enumerate(own_data["columns"]) if c["symbol"] == "W"))
-            place.get_by_label("Fabric 1").select_option(label="poplin")
+            place.get_by_label("Fabric 1").select_option(label="poplin (synthetic)")
             weight = next(f for f in own_data["fabrics"] if f["name"] == "poplin")["values"][column]["mean"]
             from math import log10
             # kg/m² in mg/cm²: 100 times as many; mean and SD are those of the file.

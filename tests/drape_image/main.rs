@@ -172,7 +172,7 @@ fn the_command_measures_writes_and_feeds_a_fabric() {
     );
     let sheet =
         kesf::characterise::characterise(&fabrics.fabrics[0], &kesf::characterise::Settings::default());
-    let (measured, method) = kesf::study::measured_drape(&sheet).unwrap();
+    let (measured, method) = kesf::study::measured_drape(&sheet, "drape_coefficient", [0.18, 0.30]).unwrap();
     assert!((measured - mean).abs() < 1e-4 && method.contains("mean of 3 pictures"), "{measured} {method}");
     // One that fabric.toml states is not overruled.
     let stated = "[[results]]\nquantity = \"drape_coefficient\"\nvalue = \"12 %\"\nmethod = \"y\"\n";

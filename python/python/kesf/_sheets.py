@@ -266,12 +266,13 @@ class Sheets(Sequence[Sheet]):
 
         A row each: fabric, parameter (``E secant`` is a modulus), direction, mean, sd, n, unit, status, cv, ci95,
         origin. With ``wide`` a row a fabric, and a column for each parameter in a direction (``B_warp``, ``T0``,
-        ``E_secant_weft``) with its unit in the metadata, and the origin.
+        ``E_secant_weft``) with its unit in the metadata; behind each is its status in a column of its own
+        (``B_warp_status``: measured, inferred, assumed or doubtful), and the origin comes last.
 
         >>> import kesf
         >>> wide = kesf.characterise("kesf_data/petrak_m1").parameters(wide=True)
-        >>> wide.units["B_warp"], len(wide)
-        ('N·m', 1)
+        >>> wide.units["B_warp"], wide["B_warp_status"][0], len(wide)
+        ('N·m', 'measured', 1)
         """
         native = [sheet._native for sheet in self._sheets]
         table = _kesf.Sheet.wide if wide else _kesf.Sheet.parameters
@@ -309,9 +310,16 @@ class Sheets(Sequence[Sheet]):
     def _repr_html_(self) -> str:
         table = self.parameters("kes", wide=True)
         shown = [
-            n for n in table.column_names if n in ("fabric", "B_warp", "B_weft", "G_warp", "G_weft", "G", "W", "T0")
+            n
+            for n in table.column_names
+            if n in ("fabric", "B_warp", "B_weft", "G_warp", "G_weft", "G", "W", "T0", "origin")
         ]
         columns = table.to_pydict()
         units = table.units
         header = [f"{name} ({units[name]})" if name in units else name for name in shown]
-        return html_table(header, list(zip(*(columns[name] for name in shown), strict=True)))
+
+        def cell(name: str, row: int) -> str:
+            status = columns.get(f"{name}_status", ["measured"] * len(table))[row]
+            return number(columns[name][row]) + (f" ({status})" if status not in (None, "measured") else "")
+
+        return html_table(header, [[cell(name, row) for name in shown] for row in range(len(table))])

@@ -134,6 +134,9 @@ pub struct DrapeCapture {
     /// Side of the cloth that is up, where the name of the picture says so.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub side: Option<ClothSide>,
+    /// Codes of the findings for which no mean counts this picture: the sheet is cut off (K054), or the coefficient cannot be (K056).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out_for: Vec<String>,
     /// Drape coefficient, 0 to 1; not there without a scale.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coefficient: Option<f64>,
@@ -226,6 +229,7 @@ pub fn measure(seen: &SeenSheet, setup: &DrapeSetup, others: Option<f64>) -> (Dr
         picture: String::new(),
         test: String::new(),
         side: None,
+        left_out_for: Vec::new(),
         coefficient,
         folds: counted.count,
         folds_band: counted.band,
@@ -241,7 +245,10 @@ pub fn measure(seen: &SeenSheet, setup: &DrapeSetup, others: Option<f64>) -> (Dr
         outline: distance,
     };
     let facts = facts(seen, setup, &capture);
-    (capture, facts)
+    let is_fatal =
+        |fact: &&DrapeFact| matches!(fact, DrapeFact::CutOff { .. } | DrapeFact::OutOfRange { .. });
+    let left_out_for = facts.iter().filter(is_fatal).map(|fact| fact.code().to_string()).collect();
+    (DrapeCapture { left_out_for, ..capture }, facts)
 }
 
 fn harmonic(order: usize, [cos, sin]: [f64; 2]) -> Harmonic {

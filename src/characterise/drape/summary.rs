@@ -39,8 +39,12 @@ pub struct DrapeSummary {
     /// Drape coefficient, 0 to 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coefficient: Option<Spread>,
-    /// Number of folds.
-    pub folds: Spread,
+    /// Number of folds; not there where no picture counts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub folds: Option<Spread>,
+    /// Pictures that do not count, for what [`DrapeCapture::left_out_for`] says.
+    #[serde(default)]
+    pub left_out: usize,
 }
 
 /// Each test, and each side of it where several are known.
@@ -61,21 +65,25 @@ pub fn summaries(captures: &[DrapeCapture]) -> Vec<DrapeSummary> {
 }
 
 fn summary(test: &str, side: Option<ClothSide>, captures: &[&DrapeCapture]) -> Option<DrapeSummary> {
-    let coefficients: Vec<f64> = captures.iter().filter_map(|c| c.coefficient).collect();
-    let folds: Vec<f64> = captures.iter().map(|c| c.folds as f64).collect();
-    Some(DrapeSummary {
+    let counted = || captures.iter().filter(|capture| capture.left_out_for.is_empty());
+    let coefficients: Vec<f64> = counted().filter_map(|c| c.coefficient).collect();
+    let folds: Vec<f64> = counted().map(|c| c.folds as f64).collect();
+    (!captures.is_empty()).then(|| DrapeSummary {
         test: test.to_string(),
         side,
         coefficient: Spread::of(&coefficients),
-        folds: Spread::of(&folds)?,
+        left_out: captures.len() - folds.len(),
+        folds: Spread::of(&folds),
     })
 }
 
 /// The measured results of a test, as `fabric.toml` and `drape.toml` state them.
 pub fn drape_results(summary: &DrapeSummary, method: &DrapeMethod) -> Vec<MeasuredResult> {
+    let left_out =
+        if summary.left_out == 0 { String::new() } else { format!(", {} left out", summary.left_out) };
     let spread = |s: &Spread, factor: f64, unit: &str| match s.sd {
-        Some(sd) => format!("mean of {} pictures, SD {:.1}{unit}", s.n, factor * sd),
-        None => "one picture".into(),
+        Some(sd) => format!("mean of {} pictures, SD {:.1}{unit}{left_out}", s.n, factor * sd),
+        None => format!("one picture{left_out}"),
     };
     let result = |quantity: &str, value: String, spread: String| MeasuredResult {
         quantity: quantity.into(),
@@ -86,7 +94,7 @@ pub fn drape_results(summary: &DrapeSummary, method: &DrapeMethod) -> Vec<Measur
     let coefficient = summary.coefficient.iter().map(|c| {
         result("drape_coefficient", format!("{:.2} %", 100.0 * c.mean), spread(c, 100.0, " points"))
     });
-    let folds = &summary.folds;
-    let nodes = result("drape_nodes", format!("{:.1}", folds.mean), spread(folds, 1.0, ""));
-    coefficient.chain([nodes]).collect()
+    let folds = summary.folds.iter();
+    let nodes = folds.map(|f| result("drape_nodes", format!("{:.1}", f.mean), spread(f, 1.0, "")));
+    coefficient.chain(nodes).collect()
 }

@@ -82,6 +82,7 @@ fn what_makes_a_picture_doubtful_is_told() {
     let (capture, facts) = measure(&doubtful, &setup(), None);
     assert!(capture.coefficient.unwrap() > 1.0);
     assert_eq!(codes(facts), ["K053", "K054", "K055", "K056"]);
+    assert_eq!(capture.left_out_for, ["K054", "K056"]);
 }
 
 #[test]
@@ -98,7 +99,7 @@ fn captures_are_summed_up_by_test_and_side() {
         capture("b", None, 500.0),
     ];
     let found = summaries(&all);
-    let rows: Vec<_> = found.iter().map(|s| (s.test.as_str(), s.side, s.folds.n)).collect();
+    let rows: Vec<_> = found.iter().map(|s| (s.test.as_str(), s.side, s.folds.map_or(0, |f| f.n))).collect();
     assert_eq!(
         rows,
         [("a", None, 3), ("a", Some(ClothSide::Face), 2), ("a", Some(ClothSide::Back), 1), ("b", None, 1)]
@@ -106,6 +107,13 @@ fn captures_are_summed_up_by_test_and_side() {
     let results = drape_results(&found[0], &DrapeMethod::stated(0.18, 0.30));
     assert_eq!((results[0].quantity.as_str(), results[1].value.as_str()), ("drape_coefficient", "5.0"));
     assert!(results[0].method.contains("30 cm sheet on a disc of 18 cm; mean of 3 pictures"), "{results:?}");
+    let cut_off = DrapeCapture { left_out_for: vec!["K054".into()], ..capture("a", None, 200.0) };
+    let with_it = summaries(&[all[0].clone(), all[1].clone(), cut_off.clone()]);
+    assert_eq!((with_it[0].left_out, with_it[0].coefficient), (1, found[1].coefficient));
+    let results = drape_results(&with_it[0], &DrapeMethod::default());
+    assert!(results[0].method.ends_with("points, 1 left out"), "{results:?}");
+    let alone = summaries(&[cut_off]);
+    assert!(alone[0].folds.is_none() && drape_results(&alone[0], &DrapeMethod::default()).is_empty());
     assert_eq!(ClothSide::in_name("poplin-Face-2"), Some(ClothSide::Face));
     assert_eq!(ClothSide::in_name("poplin_2"), None);
 }

@@ -29,7 +29,7 @@ super::facts! {
         "K054" CutOff {
             /// Part of the outline that lies along the border.
             part: f64,
-        } = "{:.0} % of the outline lies along the border of the picture: the sheet is cut off, and the coefficient too low",
+        } = "{:.0} % of the outline lies along the border of the picture: the sheet is cut off, and the coefficient too low: no mean counts it",
             100.0 * part;
         /// A faint outline.
         "K055" Faint {
@@ -45,7 +45,7 @@ super::facts! {
             coefficient: f64,
             /// The sizes that it rests on.
             method: String,
-        } = "a drape coefficient of {:.1} % cannot be: the scale, the sizes ({method}) or the outline is wrong", 100.0 * coefficient;
+        } = "a drape coefficient of {:.1} % cannot be: the scale, the sizes ({method}) or the outline is wrong; no mean counts it", 100.0 * coefficient;
         /// A number of folds that others may count otherwise.
         "K057" DoubtfulFolds {
             /// The number that is given.

@@ -408,6 +408,15 @@ super::facts! {
             sizes: String,
         } = "{fabric}: the source of the measured drape coefficient does not state disc and sheet, or says that they are assumed; \
              it is taken as that of a {sizes}";
+        /// Coefficients of several sizes, of which one is hung.
+        "S165" SeveralDrapeSizes {
+            /// Name of the fabric.
+            fabric: String,
+            /// The first, with which it is solved.
+            hung: String,
+            /// The others.
+            others: Vec<String>,
+        } = "{fabric}: its drape was measured with several sizes; this is the first, a {hung}; not hung: {}", others.join(", ");
         /// A drape that was measured with other sizes than it is solved with.
         "S126" OtherDrapeSizes {
             /// Name of the fabric.
@@ -416,8 +425,8 @@ super::facts! {
             measured: String,
             /// With which it is solved.
             hung: String,
-        } = "{fabric}: the drape coefficient was measured with a {measured}, and this is a {hung}: they cannot be compared; \
-             write sizes = \"measured\" in [analysis]";
+        } = "{fabric}: the drape coefficient was measured with a {measured}, and this is a {hung}: they are not compared; \
+             write sizes = \"measured\" in [analysis], and the sizes of the test into `method` of what was measured";
         /// Rotations that depend on the steps.
         "S121" TurnedAbout {
             /// The largest rotation about an axis that is held (rad).

@@ -29,7 +29,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 pub use faces::{Faces, hang_by_face};
-pub use method::{as_measured, drape_method};
+pub use method::as_measured;
 pub use rim::Folds;
 
 use self::search::{Cloth, Found, Hanging, Searches, WORTH_CARRYING};
@@ -39,9 +39,9 @@ use crate::case::{Annulus, DrapeProblem, Outline, Problem, Sheet};
 use crate::characterise::FabricSheet;
 use crate::fields::{Resultants, element_means_moved};
 use crate::finding::{Finding, Located, Place, StudyFact};
+use crate::kes::DrapeMethod;
 use crate::law::Mode;
 use crate::model::Model;
-use crate::quantity::Ratio;
 use crate::section::{SheetLaw, ShellSection};
 use crate::solve::Options;
 use crate::solve::nonlinear::{NonlinearError, Solution, State};
@@ -235,10 +235,20 @@ pub fn drape_stages(case: &Case) -> usize {
     }
 }
 
-/// A measured drape coefficient of a fabric (0 to 1) and its method, if its folder has one.
-pub fn measured_drape(sheet: &FabricSheet) -> Option<(f64, &str)> {
-    let result = sheet.info.results.iter().find(|r| r.quantity == "drape_coefficient")?;
-    Some((result.value.parse::<Ratio>().ok()?.si(), &result.method))
+/// What was measured of a fabric's drape, `drape_coefficient` (0 to 1) or `drape_nodes`, and its method: the first with disc and sheet of these
+/// diameters (m). Coefficients of other sizes are not to be compared.
+pub fn measured_drape<'s>(
+    sheet: &'s FabricSheet,
+    quantity: &str,
+    [disc, diameter]: [f64; 2],
+) -> Option<(f64, &'s str)> {
+    let is_same = |(_, method): &(f64, &str)| !DrapeMethod::read(method).differs(disc, diameter);
+    measured_drapes(sheet, quantity).find(is_same)
+}
+
+fn measured_drapes<'s>(sheet: &'s FabricSheet, quantity: &str) -> impl Iterator<Item = (f64, &'s str)> {
+    let results = sheet.info.results.iter().filter(move |result| result.quantity == quantity);
+    results.filter_map(|result| Some((result.si()?.0, result.method.as_str())))
 }
 
 /// The ring between disc and rim.
