@@ -72,7 +72,7 @@ mod tests {
     /// Diameters (cm) and what is told, of a case of 30 cm on 18 cm.
     fn hung(sizes: &str, measured: &[(&str, &str)]) -> ([f64; 2], Vec<String>) {
         let text = format!(
-            "title = \"drape\"\n[sheet]\nshape = \"annulus\"\ninner_diameter = \"18 cm\"\ndiameter = \"30 cm\"\ncells = [14, 90]\n\
+            "title = \"drape\"\nfabric = \"*\"\n[sheet]\nshape = \"annulus\"\ninner_diameter = \"18 cm\"\ndiameter = \"30 cm\"\ncells = [14, 90]\n\
              [[supports]]\nset = \"inner\"\nkind = \"clamped\"\n[[loads]]\nkind = \"gravity\"\n[analysis]\nkind = \"drape\"\n{sizes}\n"
         );
         let case = Case::parse(std::path::Path::new("drape.toml"), &text).unwrap();
