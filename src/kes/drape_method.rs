@@ -49,7 +49,7 @@ impl DrapeMethod {
     }
 
     /// The sizes that the words state, be they assumed in these words; nothing without sizes, and nothing where more than two
-    /// are named, or two of which none is the disc of a standard and no word says which one it is.
+    /// are named, or two of which none is the disc of a standard and the words do not say which one it is (`disc`, `40 cm on 20 cm`, `40/20 cm`).
     pub fn in_words(method: &str) -> Option<Self> {
         let words = method.to_lowercase();
         let says = |word: &str| words.contains(word);
@@ -62,6 +62,7 @@ impl DrapeMethod {
         let is_disc = |size: f64| {
             [CUSICK_DISC, JIS[1]].iter().any(|disc| near(*disc, size))
                 || ["disc", "disk", "plate", "pedestal"].iter().any(|word| says(word))
+                || is_pair(&words)
         };
         let found = match sizes[..] {
             [] if is_jis => Self::stated(JIS[1], JIS[0]),
@@ -97,6 +98,15 @@ impl DrapeMethod {
         let assumed = if self.assumed { " (assumed)" } else { "" };
         format!("{} cm sheet on a disc of {} cm{assumed}", centimetres(self.sheet), centimetres(self.disc))
     }
+}
+
+/// Whether two numbers stand as a sheet and its disc do: `40 cm on 20 cm`, `40/20 cm`.
+fn is_pair(words: &str) -> bool {
+    let begins = |text: &str| text.trim_start().starts_with(|c: char| c.is_ascii_digit());
+    let ends = |text: &str| text.trim_end().ends_with(|c: char| c.is_ascii_digit());
+    let after_on = |text: &str| begins(text.trim_start_matches("an ").trim_start_matches("a "));
+    words.split(" on ").skip(1).any(after_on)
+        || words.split('/').zip(words.split('/').skip(1)).any(|(before, after)| ends(before) && begins(after))
 }
 
 /// Numbers with a unit of length, and the one before a stroke (`24/18 cm`) or a tolerance (`30.0±0.1 cm`), in metres.
@@ -161,6 +171,8 @@ mod tests {
             ("30.0±0.1 cm, 18 cm", 0.30, 0.18, false),
             ("sheet radius 12 cm, disc radius 9 cm", 0.24, 0.18, false),
             ("disk of 20 cm, specimen of 40 cm", 0.40, 0.20, false),
+            ("40 cm on 20 cm", 0.40, 0.20, false),
+            ("40/20 cm", 0.40, 0.20, false),
             // Which one is the disc, or the sheet, is not said.
             ("36 cm specimen, camera 60 cm above", 0.30, 0.18, true),
             ("24 cm, 30 cm and 36 cm", 0.30, 0.18, true),
