@@ -102,11 +102,16 @@ impl DrapeMethod {
 
 /// Whether two numbers stand as a sheet and its disc do: `40 cm on 20 cm`, `40/20 cm`.
 fn is_pair(words: &str) -> bool {
-    let begins = |text: &str| text.trim_start().starts_with(|c: char| c.is_ascii_digit());
-    let ends = |text: &str| text.trim_end().ends_with(|c: char| c.is_ascii_digit());
-    let after_on = |text: &str| begins(text.trim_start_matches("an ").trim_start_matches("a "));
-    words.split(" on ").skip(1).any(after_on)
-        || words.split('/').zip(words.split('/').skip(1)).any(|(before, after)| ends(before) && begins(after))
+    let mut after_on = words.split(" on ").skip(1);
+    let mut strokes = words.split('/').zip(words.split('/').skip(1));
+    after_on.any(|text| begins_with_digit(text.trim_start_matches("an ").trim_start_matches("a ")))
+        || strokes.any(|(before, after)| {
+            before.trim_end().ends_with(|c: char| c.is_ascii_digit()) && begins_with_digit(after.trim_start())
+        })
+}
+
+fn begins_with_digit(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_ascii_digit())
 }
 
 /// Numbers with a unit of length, and the one before a stroke (`24/18 cm`) or a tolerance (`30.0±0.1 cm`), in metres.
