@@ -2,7 +2,7 @@
 //!
 //! # Layers
 //!
-//! The list of modules below is the layering: a module may use the ones above it only
+//! The order of `pub mod` in this file is the layering: a module may use the ones above it only
 //! (`tests/architecture/rules.rs` holds the exact table). Two arms meet in one type:
 //! [`instrument`] and [`characterise`] know cloth, [`mesh`] to [`fields`] know shells,
 //! and [`constitutive`] turns a [`characterise::FabricSheet`] into a [`section::ShellSection`].
