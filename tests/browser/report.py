@@ -452,7 +452,7 @@ def correlation(page, data):
     few = place.locator("td.few").all_inner_texts()
     check("below n = 5 there is no number", all(re.fullmatch(r"n [0-4]", text.strip()) for text in few), few)
     button.click()
-    check("the points behind it are shown", place.locator(".chart circle").count() == len(pairs), place.locator(".chart circle").count())
+    check("the points behind it are shown", place.locator(".chart svg[role=img] circle").count() == len(pairs), place.locator(".chart svg[role=img] circle").count())
     check("and told", re.search(r"log B against log W: r = .* to .*n = " + str(len(pairs)), place.locator(".reading").inner_text()) or
           re.search(r"log W against log B", place.locator(".reading").inner_text()), place.locator(".reading").inner_text())
     with page.expect_download() as caught:
