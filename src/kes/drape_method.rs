@@ -53,8 +53,13 @@ impl DrapeMethod {
     pub fn in_words(method: &str) -> Option<Self> {
         let words = method.to_lowercase();
         let says = |word: &str| words.contains(word);
-        let twice = if says("radius") || says("radii") { 2.0 } else { 1.0 };
-        let mut sizes: Vec<f64> = lengths(&words).into_iter().map(|length| twice * length).collect();
+        let mut sizes = lengths(&words);
+        // One radius beside a diameter is not clear enough.
+        match words.matches("radius").count() {
+            0 => {}
+            radii if radii >= sizes.len() => sizes.iter_mut().for_each(|size| *size *= 2.0),
+            _ => return None,
+        }
         sizes.sort_by(f64::total_cmp);
         sizes.dedup_by(|a, b| (*a - *b).abs() < 1e-3);
         let near = |a: f64, b: f64| (a - b).abs() < 5e-4;
@@ -181,6 +186,7 @@ mod tests {
             // Which one is the disc, or the sheet, is not said.
             ("36 cm specimen, camera 60 cm above", 0.30, 0.18, true),
             ("24 cm, 30 cm and 36 cm", 0.30, 0.18, true),
+            ("36 cm specimen, disc radius 9 cm", 0.30, 0.18, true),
             ("18 cm on 18.1 cm", 0.30, 0.18, true),
             ("", 0.30, 0.18, true),
         ] {

@@ -38,7 +38,7 @@ fn diameters(d: &Drape) -> [f64; 2] {
     [d.disc_radius, d.sheet_radius].map(|radius| 2.0 * radius)
 }
 
-/// The title of the case, and what was hung where that is not what it says.
+/// The title of the case, behind what was hung where that is of other sizes.
 fn title(task: &Task, d: &Drape) -> String {
     let [disc, sheet] = diameters(d);
     let hung = DrapeMethod::stated(disc, sheet);
@@ -47,7 +47,8 @@ fn title(task: &Task, d: &Drape) -> String {
         Problem::Drape(problem)
             if hung.differs(problem.ring.inner_diameter.si(), problem.ring.diameter.si()) =>
         {
-            format!("{title}; hung: {}", hung.text())
+            // What was hung comes first: a chart cuts a long title at its end.
+            format!("Drape of a {}; case: {title}", hung.text())
         }
         _ => title.clone(),
     }
@@ -487,35 +488,4 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn point(label: &str, law: Mode, simulated: f64, band: [f64; 2]) -> DrapePoint {
-        let point = ParityPoint {
-            label: label.into(),
-            measured: 50.0,
-            simulated,
-            simulated_band: Some(band),
-            ..ParityPoint::default()
-        };
-        DrapePoint { law, point }
-    }
-
-    #[test]
-    fn a_fabric_hung_both_ways_has_a_bracket() {
-        let hung = [
-            point("a", Mode::Elastic, 40.0, [39.0, 45.0]),
-            point("b", Mode::Elastic, 60.0, [55.0, 61.0]),
-            point("c", Mode::Elastic, 60.0, [55.0, 61.0]),
-            point("b", Mode::Friction, 70.0, [52.0, 71.0]),
-            point("a", Mode::Friction, 55.0, [48.0, 56.0]),
-        ];
-        let text = bracket(&hung).unwrap().text();
-        let rows: Vec<&str> = text.lines().skip(1).map(str::trim_end).collect();
-        assert_eq!(rows.len(), 2, "{text}");
-        assert!(rows[0].starts_with("a ") && rows[0].ends_with("within"), "{text}");
-        assert!(rows[0].contains("40.0 (39.0 to 45.0)") && rows[0].contains("55.0 (48.0 to 56.0)"), "{text}");
-        assert!(rows[1].starts_with("b ") && rows[1].ends_with("below"), "{text}");
-        assert!(bracket(&hung[..3]).is_none());
-    }
-}
+mod tests;
