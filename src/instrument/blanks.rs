@@ -4,7 +4,7 @@
 //! stand, and a row of numbers at every blank. A hole in such a row would shift the cells behind it to the left: a
 //! text whose rows of numbers change their length is left alone.
 
-use super::sniff::{Number, number};
+use super::sniff::{Number, may_be_number, number};
 
 /// The fewest rows of numbers that make a table.
 const ROWS: usize = 3;
@@ -19,7 +19,7 @@ pub(super) fn tabbed(text: &str) -> Option<String> {
     let (mut rows, mut before) = (0, None);
     for line in text.split_inclusive('\n') {
         let cells: Vec<&str> = line.split_whitespace().collect();
-        let numbers = cells.len() > 1 && cells.iter().all(|c| number(c, '.') != Number::Text);
+        let numbers = cells.len() > 1 && cells.iter().all(|c| may_be_number(c, '.'));
         if numbers && before.is_some_and(|n| n != cells.len()) {
             return None;
         }

@@ -8,7 +8,7 @@ use super::raw::Row;
 use super::result_table::{differ, two_units};
 use super::sniff::{Number, number};
 use super::unit_text::{split_unit, unit};
-use super::words::folded;
+use super::words::{folded, trimmed};
 
 /// The rows with bare numbers below headings with units; none where no cell of a curve has one.
 ///
@@ -45,16 +45,15 @@ pub(super) fn to_headings<'r>(
 /// Whether every cell begins as a number: one look at each.
 fn is_of_numbers(row: &Row<'_>) -> bool {
     row.filled()
-        .all(|(_, c)| c.text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "-+.−".contains(c)))
+        .all(|(_, c)| trimmed(&c.text).starts_with(|c: char| c.is_ascii_digit() || "-+.−".contains(c)))
 }
 
 /// Whether all begin so, and one of them ends as none.
 fn is_united(row: &Row<'_>) -> bool {
-    row.filled().nth(1).is_some()
-        && is_of_numbers(row)
-        && row.filled().any(|(_, c)| {
-            !c.text.trim_end().ends_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | ','))
-        })
+    let ends_as_number =
+        |text: &str| trimmed(text).ends_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | ','));
+    // What most rows lack is asked first.
+    row.filled().any(|(_, c)| !ends_as_number(&c.text)) && row.filled().nth(1).is_some() && is_of_numbers(row)
 }
 
 /// A number and the unit behind it. An angle is one here: a curve has no directions in its cells.

@@ -7,7 +7,7 @@ use super::factor;
 use super::keyed_rows::KeyColumn;
 use super::layout::{Column, Entry, Pair, Scanner};
 use super::raw::Row;
-use super::sniff::{Number, number};
+use super::sniff::{Number, may_be_number, number};
 use super::vocabulary::Vocabulary;
 use crate::finding::{Finding, Place, ReadFact};
 
@@ -27,8 +27,7 @@ impl Scanner<'_, '_> {
                 | HeaderKey::Voltage
         );
         let is_number = |row: &Row<'_>| {
-            let first = row.filled().next().map(|(_, c)| number(&c.text, self.context.decimal));
-            first.is_some_and(|first| first != Number::Text)
+            row.filled().next().is_some_and(|(_, c)| may_be_number(&c.text, self.context.decimal))
         };
         let in_one_header = !self.rows[..self.at.min(self.rows.len())]
             .iter()
@@ -153,7 +152,7 @@ impl Scanner<'_, '_> {
             .filter(|(i, c)| {
                 columns.iter().all(|column| column.index != *i)
                     && keys.iter().all(|column| column.index != *i)
-                    && number(&c.text, decimal) == Number::Text
+                    && !may_be_number(&c.text, decimal)
                     && is_measured(rows, *i, decimal)
             })
             .map(|(_, c)| c.text.to_string())

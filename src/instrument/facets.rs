@@ -7,9 +7,9 @@ use super::condition;
 use super::dialect::{Statistic, TableColumn};
 use super::fast::{self, FastValue};
 use super::status_word;
-use super::unit_text::{is_scaled, matching_open, split_unit, unit};
+use super::unit_text::{in_round_brackets, is_scaled, matching_open, split_unit, unit};
 use super::vocabulary::{HEADING, Vocabulary};
-use super::words::{folded, normalised};
+use super::words::normalised;
 use super::{Direction, Parameter};
 use crate::kes::ValueStatus;
 
@@ -44,7 +44,7 @@ pub(super) struct Facets {
 impl Facets {
     /// Reads a cell.
     pub fn of(cell: &str, vocabulary: Vocabulary<'_>) -> Self {
-        let text = folded(cell).replace(['[', '【'], "(").replace([']', '】'], ")");
+        let text = in_round_brackets(cell);
         let text = without_deviation(&text, vocabulary).unwrap_or(text);
         // `2HG at 0.5°`: a condition that is in the definition of the parameter says nothing new, another one makes it another
         // quantity.

@@ -16,7 +16,7 @@ use super::pairs;
 use super::raw::Row;
 use super::sample_cells::{begins_with_overflow, is_text, is_without_values};
 use super::shape::{self, Region, has_numbers, is_numeric};
-use super::sniff::{Number, number};
+use super::sniff::may_be_number;
 use super::stray;
 use super::suggest;
 use super::unit_text::{is_volt, split_unit, unbracketed, unit};
@@ -241,9 +241,7 @@ impl<'t> Scanner<'t, '_> {
         columns.iter().any(|c| c.role != Role::Ignored)
             && columns.len() == row.filled().count()
             && columns.iter().all(|c| c.unit.is_some())
-            && below.is_some_and(|r| {
-                r.filled().all(|(_, c)| number(&c.text, self.context.decimal) != Number::Text)
-            })
+            && below.is_some_and(|r| r.filled().all(|(_, c)| may_be_number(&c.text, self.context.decimal)))
     }
 
     /// The columns that the dialect states for files without headings.
@@ -357,7 +355,7 @@ impl<'t> Scanner<'t, '_> {
         let key =
             self.context.vocabulary.key(&split_unit(text.split([':', '=']).next().unwrap_or_default()).0);
         let used = |i: usize| columns.iter().any(|c| c.index == i && c.role != Role::Ignored);
-        let is_word = |t: &str| !t.starts_with('#') && number(t, self.context.decimal) == Number::Text;
+        let is_word = |t: &str| !t.starts_with('#') && !may_be_number(t, self.context.decimal);
         let is_error = text.starts_with(char::is_alphabetic)
             && (text.ends_with(['!', '?'])
                 || !row.filled().skip(1).filter(|(i, _)| used(*i)).all(|(_, c)| is_word(&c.text)));

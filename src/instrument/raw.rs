@@ -10,6 +10,7 @@ use encoding_rs::{
 use super::dos::CodePage;
 use super::error::ReadProblem;
 use super::vocabulary::known_letters;
+use super::words::trimmed;
 
 /// Decoded text and the name of the encoding that was decided.
 pub(super) struct Text {
@@ -46,17 +47,17 @@ impl Cell<'_> {
 
 impl Row<'_> {
     pub fn is_blank(&self) -> bool {
-        self.cells.iter().all(|c| c.text.trim().is_empty())
+        self.cells.iter().all(|c| trimmed(&c.text).is_empty())
     }
 
     /// Index and cell of those that hold anything.
     pub fn filled(&self) -> impl Iterator<Item = (usize, &Cell<'_>)> {
-        self.cells.iter().enumerate().filter(|(_, c)| !c.text.trim().is_empty())
+        self.cells.iter().enumerate().filter(|(_, c)| !trimmed(&c.text).is_empty())
     }
 
     /// The trimmed text of a cell, if there is any.
     pub fn get(&self, index: usize) -> Option<&str> {
-        self.cells.get(index).map(|c| c.text.trim()).filter(|t| !t.is_empty())
+        self.cells.get(index).map(|c| trimmed(&c.text)).filter(|t| !t.is_empty())
     }
 
     /// The same cells, borrowed.
@@ -318,17 +319,18 @@ impl Quote {
 pub(super) fn cells(line: &str, delimiter: char) -> Vec<Cell<'_>> {
     let mut out = Vec::new();
     let (mut rest, mut column) = (line, 1);
-    let plain = !line.contains('"');
+    let (plain, is_ascii) = (!line.contains('"'), line.is_ascii());
     loop {
         let end = if plain { rest.find(delimiter).unwrap_or(rest.len()) } else { cell_end(rest, delimiter) };
         let raw = &rest[..end];
-        let trimmed = raw.trim_matches(' ');
-        let lead = raw.len() - raw.trim_start_matches(' ').len();
-        out.push(Cell { text: unquoted(trimmed), column: column + lead });
+        let behind_lead = raw.trim_start_matches(' ');
+        let trimmed = behind_lead.trim_end_matches(' ');
+        let text = if plain { Cow::Borrowed(trimmed) } else { unquoted(trimmed) };
+        out.push(Cell { text, column: column + raw.len() - behind_lead.len() });
         if end == rest.len() {
             return out;
         }
-        column += raw.chars().count() + 1;
+        column += 1 + if is_ascii { raw.len() } else { raw.chars().count() };
         rest = &rest[end + delimiter.len_utf8()..];
     }
 }

@@ -424,11 +424,11 @@ fn dialect_name(rows: &[Row<'_>], context: &Context<'_>, log: &mut Vec<String>) 
         .flat_map(|r| r.filled().map(|(_, c)| c.text.to_string()).collect::<Vec<_>>())
         .collect();
     let dialects = context.vocabulary.closest(&words);
-    let known = |(name, unknown): &(String, Vec<String>)| format!("{name} {}", words.len() - unknown.len());
+    let known = |(name, unknown): &(&str, Vec<&str>)| format!("{name} {}", words.len() - unknown.len());
     let knowing = dialects.iter().filter(|(_, unknown)| unknown.len() < words.len());
     let counts: Vec<String> = knowing.map(known).collect();
     log.push(format!("words that dialects know, of {} texts: {}", words.len(), counts.join(", ")));
-    dialects.into_iter().next().unwrap_or_default().0
+    dialects.first().map_or_else(String::new, |(name, _)| (*name).to_string())
 }
 
 /// Numbers the specimens that the file leaves unnumbered, per test and direction, in file order.

@@ -3,7 +3,7 @@
 
 use super::facets::Facets;
 use super::raw::{Cell, Row};
-use super::sniff::{Number, number};
+use super::sniff::may_be_number;
 use super::value::is_gap;
 use super::vocabulary::Vocabulary;
 use crate::instrument::dialect::TableColumn;
@@ -20,7 +20,7 @@ pub(super) fn put_under_heads(rows: &mut [Row<'_>], text: &str, decimal: char, v
     let body: Vec<&Row<'_>> = filled.collect();
     let width = heads.cells.len();
     let has_one_more = body.iter().all(|row| row.cells.len() == width + 1 && row.get(width).is_some());
-    let is_word = |cell: &str| number(cell, decimal) == Number::Text && !is_gap(cell);
+    let is_word = |cell: &str| !may_be_number(cell, decimal) && !is_gap(cell);
     if body.is_empty() || !has_one_more || !heads.cells.iter().all(|c| is_word(c.text.trim())) {
         return false;
     }

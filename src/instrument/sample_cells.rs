@@ -1,7 +1,7 @@
 //! Cells below the headings of curves: numbers, negative ones as accounts have them, and cells that hold none.
 
 use super::raw::Row;
-use super::sniff::{Number, number};
+use super::sniff::{Number, may_be_number, number};
 use super::value::{is_gap, is_overflow};
 use super::words::folded;
 
@@ -25,7 +25,7 @@ pub(super) fn of_accounts(cell: &str, decimal: char) -> Option<f64> {
 
 /// Whether a cell is words, where a number is expected.
 pub(super) fn is_text(cell: &str, decimal: char) -> bool {
-    number(cell, decimal) == Number::Text && of_accounts(cell, decimal).is_none()
+    !may_be_number(cell, decimal) && of_accounts(cell, decimal).is_none()
 }
 
 /// Whether a cell stands for a value that is not there: `NaN`, `#N/A`, `***`, `-`.

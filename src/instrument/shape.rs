@@ -11,7 +11,7 @@ use super::raw::{Cell, Row};
 use super::row_kind::{Kind, kind};
 pub(super) use super::row_kind::{facets, is_value, is_value_of};
 pub(super) use super::section::section;
-use super::sniff::{Number, number};
+use super::sniff::may_be_number;
 use super::table_title;
 use super::unit_text::split_unit;
 use super::value::is_gap;
@@ -72,12 +72,12 @@ pub(super) fn heads_row(above: &[Row<'_>], row: &Row<'_>, context: &Context<'_>)
 
 /// Several numbers and nothing else.
 pub(super) fn is_numeric(row: &Row<'_>, decimal: char) -> bool {
-    row.filled().count() > 1 && row.filled().all(|(_, c)| number(&c.text, decimal) != Number::Text)
+    row.filled().count() > 1 && row.filled().all(|(_, c)| may_be_number(&c.text, decimal))
 }
 
 /// Whether numbers stand beside what may be the name of their row.
 pub(super) fn has_numbers(row: &Row<'_>, decimal: char) -> bool {
-    row.filled().filter(|(_, c)| number(&c.text, decimal) != Number::Text).count() > 1
+    row.filled().filter(|(_, c)| may_be_number(&c.text, decimal)).count() > 1
 }
 
 /// Whether a row of words is the heading of a result table by its symbols.

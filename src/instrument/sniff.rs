@@ -38,9 +38,41 @@ pub(super) enum Number {
 
 /// From here on a number is none that was measured, and sums and units could make it infinite.
 const BEYOND: f64 = 1e100;
+/// Bytes of the longest plain number: none of them is beyond that.
+const PLAIN: usize = 40;
+
+/// Whether a cell is digits with a sign before and a decimal mark among them at most, as nearly all cells of a record are: then it
+/// is a number, and nothing else has to be looked for.
+fn is_plain(cell: &str, decimal: char) -> bool {
+    let bytes = cell.as_bytes();
+    let bytes = bytes.strip_prefix(b"-").or(bytes.strip_prefix(b"+")).unwrap_or(bytes);
+    let mut others = bytes.iter().filter(|b| !b.is_ascii_digit());
+    bytes.first().is_some_and(u8::is_ascii_digit)
+        && bytes.len() <= PLAIN
+        && others.next().is_none_or(|mark| char::from(*mark) == decimal)
+        && others.next().is_none()
+}
+
+/// Whether a cell is a number, one that is not finite, or begins like one: anything but [`Number::Text`].
+pub(super) fn may_be_number(cell: &str, decimal: char) -> bool {
+    is_plain(cell, decimal) || any_number(cell, decimal) != Number::Text
+}
 
 /// Reads a cell as a number.
 pub(super) fn number(cell: &str, decimal: char) -> Number {
+    if is_plain(cell, decimal) { parsed(cell, decimal) } else { any_number(cell, decimal) }
+}
+
+fn parsed(text: &str, decimal: char) -> Number {
+    let parsed = if decimal == ',' { text.replace(',', ".").parse() } else { text.parse::<f64>() };
+    match parsed {
+        Ok(value) if value.abs() < BEYOND => Number::Value(value),
+        Ok(_) => Number::NotFinite,
+        Err(_) => Number::Broken,
+    }
+}
+
+fn any_number(cell: &str, decimal: char) -> Number {
     let text = folded(cell);
     let bytes = text.as_bytes();
     let sign = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
@@ -55,12 +87,7 @@ pub(super) fn number(cell: &str, decimal: char) -> Number {
     let in_number =
         |b: u8| b.is_ascii_digit() || matches!(b, b'+' | b'-' | b'e' | b'E') || char::from(b) == decimal;
     if bytes.iter().all(|&b| in_number(b)) {
-        let parsed = if decimal == ',' { text.replace(',', ".").parse() } else { text.parse::<f64>() };
-        return match parsed {
-            Ok(value) if value.abs() < BEYOND => Number::Value(value),
-            Ok(_) => Number::NotFinite,
-            Err(_) => Number::Broken,
-        };
+        return parsed(&text, decimal);
     }
     if let Some(spelt) = of_fortran(&text, decimal) {
         return number(&spelt, decimal);
@@ -151,11 +178,8 @@ pub(super) fn sniff(
 fn score(text: &str, delimiter: char, decimal: char) -> i64 {
     let mut score = 0;
     for line in text.lines().filter(|l| l.contains(delimiter)) {
-        let mut count = |cell: &str| match number(cell, decimal) {
-            Number::Value(_) | Number::NotFinite => score += 1,
-            Number::Broken => score -= 10,
-            Number::Text => score += of_words(cell, delimiter, decimal),
-        };
+        let mut count =
+            |cell: &str| score += if is_plain(cell, decimal) { 1 } else { points(cell, delimiter, decimal) };
         if line.contains('"') {
             raw::cells(line, delimiter).iter().for_each(|c| count(&c.text));
         } else {
@@ -163,6 +187,15 @@ fn score(text: &str, delimiter: char, decimal: char) -> i64 {
         }
     }
     score
+}
+
+/// What a cell that is no plain number says of the marks.
+fn points(cell: &str, delimiter: char, decimal: char) -> i64 {
+    match any_number(cell, decimal) {
+        Number::Value(_) | Number::NotFinite => 1,
+        Number::Broken => -10,
+        Number::Text => of_words(cell, delimiter, decimal),
+    }
 }
 
 /// The decimal mark of lines of one value each, `B = 0,081 mm`, where no delimiter is: as if each line were a cell.
@@ -238,6 +271,24 @@ fn thousands(text: &str, format: Format) -> Result<(), ReadProblem> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Cells that are read without a look at anything else give what the look at everything gives.
+    #[test]
+    fn plain_numbers_are_read_as_all_are() {
+        let long = format!("{}.5", "9".repeat(PLAIN - 2));
+        let cells =
+            ["0", "-1", "+1", "12.5", "1,5", "1.", ".5", "-.5", "-", "+-1", "1.2.3", "1,2.3", "00.10"];
+        let others = ["", " 1", "1 ", "1-2", "1e5", "5a", "\u{ff11}", "NaN", &long, &format!("{long}1")];
+        for cell in cells.into_iter().chain(others) {
+            for decimal in ['.', ','] {
+                let all = any_number(cell, decimal);
+                assert_eq!(number(cell, decimal), all, "{cell}");
+                assert_eq!(may_be_number(cell, decimal), all != Number::Text, "{cell}");
+                assert!(!is_plain(cell, decimal) || matches!(all, Number::Value(_)), "{cell}");
+            }
+        }
+        assert!(is_plain(&long, '.') && is_plain("-1,5", ','));
+    }
 
     #[test]
     fn numbers_in_every_spelling() {

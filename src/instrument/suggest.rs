@@ -56,13 +56,13 @@ fn unknown_words(words: &[String], vocabulary: Vocabulary<'_>) -> (ReadProblem, 
 
 /// What the dialects know of a heading row, and a dialect file that names the rest, ready to be saved: the unit of a
 /// column often tells what it holds; where it does not, the line is left as a remark.
-fn layout(words: &[String], closest: &[(String, Vec<String>)]) -> Vec<String> {
+fn layout(words: &[String], closest: &[(&str, Vec<&str>)]) -> Vec<String> {
     if words.is_empty() {
         return vec!["a dialect file that names columns without headings: column_order = [\"curvature\", \"moment\"], and [units]".into()];
     }
     let mut lines = vec![format!("headings {}", words.join(" | "))];
     for (name, unknown) in closest.iter().filter(|(_, unknown)| unknown.len() < words.len()) {
-        let known: Vec<&str> = words.iter().filter(|w| !unknown.contains(w)).map(String::as_str).collect();
+        let known: Vec<&str> = words.iter().map(String::as_str).filter(|w| !unknown.contains(w)).collect();
         let missing = if unknown.is_empty() { "nothing".to_string() } else { unknown.join(", ") };
         lines.push(format!("dialect {name}: knows {}; does not know {missing}", known.join(", ")));
     }
@@ -73,7 +73,7 @@ fn layout(words: &[String], closest: &[(String, Vec<String>)]) -> Vec<String> {
 }
 
 /// A dialect file with a line for every unknown heading.
-fn dialect_file(unknown: &[String]) -> String {
+fn dialect_file(unknown: &[&str]) -> String {
     let mut roles: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     let mut open = Vec::new();
     for heading in unknown {
@@ -135,13 +135,13 @@ mod tests {
             ("s (mm)", "displacement"),
             ("p (gf/cm²)", "pressure"),
         ] {
-            let text = dialect_file(&[heading.to_string()]);
+            let text = dialect_file(&[heading]);
             let dialect = Dialect::from_toml(&text).unwrap();
             let role = format!("{:?}", dialect.columns.keys().next().unwrap()).to_lowercase();
             assert_eq!(role, expected, "{heading}");
         }
         for heading in ["foo", "foo (kg)", "foo (gf·cm²/cm)"] {
-            let dialect = Dialect::from_toml(&dialect_file(&[heading.to_string()])).unwrap();
+            let dialect = Dialect::from_toml(&dialect_file(&[heading])).unwrap();
             assert!(dialect.columns.is_empty(), "{heading}");
         }
     }

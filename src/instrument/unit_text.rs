@@ -11,10 +11,20 @@ use crate::quantity::{QuantityError, UNITS, Unit, counts_angles, divides_by_leng
 /// Characters of the longest text that is tried as a unit.
 const LONGEST: usize = 40;
 
+/// A text as it is compared, with round brackets in the place of square ones.
+pub(super) fn in_round_brackets(cell: &str) -> String {
+    let text = folded(cell);
+    if text.contains(['[', ']', '【', '】']) {
+        text.replace(['[', '【'], "(").replace([']', '】'], ")")
+    } else {
+        text.into_owned()
+    }
+}
+
 /// A heading split into its name and the unit text, if it has one: `name (unit)`, `name [unit]`,
 /// `name/unit`, `name, unit` or `name unit`.
 pub(super) fn split_unit(cell: &str) -> (String, Option<String>) {
-    let text = folded(cell).replace(['[', '【'], "(").replace([']', '】'], ")");
+    let text = in_round_brackets(cell);
     if let Some(open) = text.ends_with(')').then(|| matching_open(&text)).flatten() {
         let inner = text[open + 1..text.len() - 1].trim().to_string();
         // "1/(cm)": the bracket belongs to the unit, not to a name.

@@ -11,6 +11,9 @@ pub(super) fn value(cell: &str, decimal: char) -> (Number, Option<f64>) {
         return (plain, None);
     }
     let text = folded(cell);
+    if !text.bytes().any(|b| b.is_ascii_digit()) {
+        return (plain, None);
+    }
     let text = text.trim_end_matches('%').trim_end();
     let parts = ["±", "+/-", "+-"].iter().find_map(|mark| text.split_once(mark));
     let parts = parts.or_else(|| text.strip_suffix(')').and_then(|t| t.split_once('(')));
@@ -88,10 +91,12 @@ fn is_raised(c: char) -> bool {
 /// and of powers of ten.
 fn without_raised(cell: &str) -> Option<String> {
     let is_marked = cell.chars().zip(cell.chars().skip(1)).any(|(a, b)| a.is_ascii_digit() && is_raised(b));
+    if cell.is_ascii() || !is_marked {
+        return None;
+    }
     let bare: String = cell.chars().filter(|c| !is_raised(*c)).collect();
     let is_power = bare.split(|c: char| !c.is_ascii_digit()).any(|digits| digits == "10");
-    (is_marked && !is_power && bare.starts_with(|c: char| c.is_ascii_digit() || "+-−.,".contains(c)))
-        .then_some(bare)
+    (!is_power && bare.starts_with(|c: char| c.is_ascii_digit() || "+-−.,".contains(c))).then_some(bare)
 }
 
 /// A number without the range in brackets behind it, `0.081 [0.07-0.09]` and `0.081 (0.07, 0.09)`, or a deviation without a number behind

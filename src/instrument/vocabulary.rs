@@ -365,21 +365,21 @@ impl<'a> Vocabulary<'a> {
     }
 
     /// Every dialect with those of the words that it does not know, the closest first.
-    pub fn closest(self, words: &[String]) -> Vec<(String, Vec<String>)> {
+    pub fn closest<'w>(self, words: &'w [String]) -> Vec<(&'a str, Vec<&'w str>)> {
         let words: Vec<(&String, String)> = words.iter().map(|w| (w, normalised(&split_unit(w).0))).collect();
         let built_in: Vec<u32> =
             words.iter().map(|(_, word)| index().known.get(word.as_str()).copied().unwrap_or(0)).collect();
         let mut found = Vec::new();
         for dialect in self.user {
             let unknown = words.iter().filter(|(_, word)| !dialect.vocabulary().any(|known| known == word));
-            found.push((dialect.name.clone(), unknown.map(|(written, _)| (*written).clone()).collect()));
+            found.push((dialect.name.as_str(), unknown.map(|(written, _)| written.as_str()).collect()));
         }
         for (i, dialect) in dialects().iter().enumerate() {
             let unknown = words.iter().zip(&built_in).filter(|(_, known)| *known >> i & 1 == 0);
-            found.push((dialect.name.clone(), unknown.map(|((written, _), _)| (*written).clone()).collect()));
+            found.push((dialect.name.as_str(), unknown.map(|((written, _), _)| written.as_str()).collect()));
         }
         // A stable sort: among equals the user's, then the first built-in one.
-        found.sort_by_key(|(_, unknown): &(String, Vec<String>)| unknown.len());
+        found.sort_by_key(|(_, unknown): &(&str, Vec<&str>)| unknown.len());
         found
     }
 }
