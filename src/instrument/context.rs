@@ -14,6 +14,12 @@ use super::seen::Seen;
 use super::vocabulary::Vocabulary;
 use crate::finding::{Finding, Place, ReadFact};
 
+thread_local! {
+    /// What cells and names of columns say in the words of the built-in dialects alone: the same in every file, and the files of a
+    /// laboratory have the same headers.
+    static BUILT_IN: (Seen<Facets>, Seen<ColumnName>) = <(Seen<Facets>, Seen<ColumnName>)>::default();
+}
+
 /// What is known of a file before its rows are read.
 pub(super) struct Context<'a> {
     pub path: &'a Path,
@@ -39,12 +45,26 @@ pub(super) struct Context<'a> {
 impl Context<'_> {
     /// What a cell says.
     pub fn facets(&self, cell: &str) -> Facets {
-        self.facets.get(cell, |cell| Facets::of(cell, self.vocabulary))
+        let made = |cell: &str| Facets::of(cell, self.vocabulary);
+        self.facets.get(cell, |cell| {
+            if self.vocabulary.is_built_in() {
+                BUILT_IN.with(|seen| seen.0.get(cell, made))
+            } else {
+                made(cell)
+            }
+        })
     }
 
     /// What the name of a column, without its unit, says.
     pub fn column_name(&self, name: &str) -> ColumnName {
-        self.column_names.get(name, |name| ColumnName::of(name, self.vocabulary))
+        let made = |name: &str| ColumnName::of(name, self.vocabulary);
+        self.column_names.get(name, |name| {
+            if self.vocabulary.is_built_in() {
+                BUILT_IN.with(|seen| seen.1.get(name, made))
+            } else {
+                made(name)
+            }
+        })
     }
 
     pub fn error(&self, line: usize, column: usize, problem: ReadProblem) -> ReadError {

@@ -1,10 +1,9 @@
 //! Units as headings print them, and headings split into name and unit.
 
 use std::borrow::Cow;
-use std::cell::RefCell;
-use std::collections::HashMap;
 
 use super::error::ReadProblem;
+use super::seen::Seen;
 use super::words::folded;
 use crate::quantity::{QuantityError, UNITS, Unit, counts_angles, divides_by_length};
 
@@ -118,12 +117,9 @@ const NAMES: &[(&str, &str)] = &[
     ("sqcm", "cm2"),
 ];
 
-/// Answers that are kept on each thread: every cell of a heading is asked a dozen times whether it is a unit, and those
-/// that are none cost most.
-const KEPT: usize = 1024;
-
 thread_local! {
-    static ANSWERS: RefCell<HashMap<String, Result<Unit, QuantityError>>> = RefCell::default();
+    /// Every cell of a heading is asked a dozen times whether it is a unit, and those that are none cost most.
+    static ANSWERS: Seen<Result<Unit, QuantityError>> = Seen::default();
 }
 
 /// The unit of a heading: the unit table, and the spellings that print uses.
@@ -131,17 +127,7 @@ pub(super) fn unit(text: &str) -> Result<Unit, QuantityError> {
     if text.chars().count() > LONGEST {
         return Unit::parse(text);
     }
-    if let Some(known) = ANSWERS.with_borrow(|answers| answers.get(text).cloned()) {
-        return known;
-    }
-    let answer = looked_up(text);
-    ANSWERS.with_borrow_mut(|answers| {
-        if answers.len() >= KEPT {
-            answers.clear();
-        }
-        answers.insert(text.to_string(), answer.clone());
-    });
-    answer
+    ANSWERS.with(|answers| answers.get(text, looked_up))
 }
 
 fn looked_up(text: &str) -> Result<Unit, QuantityError> {

@@ -107,6 +107,11 @@ impl<'a> Vocabulary<'a> {
         Self { user }
     }
 
+    /// Whether the user has no dialects, so that a text says the same in every file.
+    pub fn is_built_in(self) -> bool {
+        self.user.is_empty()
+    }
+
     pub fn dialects(self) -> impl Iterator<Item = &'a Dialect> {
         self.user.iter().chain(dialects())
     }
