@@ -50,10 +50,12 @@ fn is_of_numbers(row: &Row<'_>) -> bool {
 
 /// Whether all begin so, and one of them ends as none.
 fn is_united(row: &Row<'_>) -> bool {
-    let ends_as_number =
-        |text: &str| trimmed(text).ends_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | ','));
     // What most rows lack is asked first.
     row.filled().any(|(_, c)| !ends_as_number(&c.text)) && row.filled().nth(1).is_some() && is_of_numbers(row)
+}
+
+fn ends_as_number(cell: &str) -> bool {
+    trimmed(cell).ends_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | ','))
 }
 
 /// A number and the unit behind it. An angle is one here: a curve has no directions in its cells.

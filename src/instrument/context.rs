@@ -14,10 +14,11 @@ use super::seen::Seen;
 use super::vocabulary::Vocabulary;
 use crate::finding::{Finding, Place, ReadFact};
 
+// What texts say in the words of the built-in dialects alone is the same in every file, and the files of a laboratory have the same
+// headers.
 thread_local! {
-    /// What cells and names of columns say in the words of the built-in dialects alone: the same in every file, and the files of a
-    /// laboratory have the same headers.
-    static BUILT_IN: (Seen<Facets>, Seen<ColumnName>) = <(Seen<Facets>, Seen<ColumnName>)>::default();
+    static FACETS: Seen<Facets> = Seen::default();
+    static COLUMN_NAMES: Seen<ColumnName> = Seen::default();
 }
 
 /// What is known of a file before its rows are read.
@@ -45,26 +46,21 @@ pub(super) struct Context<'a> {
 impl Context<'_> {
     /// What a cell says.
     pub fn facets(&self, cell: &str) -> Facets {
-        let made = |cell: &str| Facets::of(cell, self.vocabulary);
-        self.facets.get(cell, |cell| {
-            if self.vocabulary.is_built_in() {
-                BUILT_IN.with(|seen| seen.0.get(cell, made))
-            } else {
-                made(cell)
-            }
-        })
+        self.facets.get(cell, |cell| FACETS.with(|kept| self.of_words(kept, cell, Facets::of)))
     }
 
     /// What the name of a column, without its unit, says.
     pub fn column_name(&self, name: &str) -> ColumnName {
-        let made = |name: &str| ColumnName::of(name, self.vocabulary);
-        self.column_names.get(name, |name| {
-            if self.vocabulary.is_built_in() {
-                BUILT_IN.with(|seen| seen.1.get(name, made))
-            } else {
-                made(name)
-            }
-        })
+        self.column_names
+            .get(name, |name| COLUMN_NAMES.with(|kept| self.of_words(kept, name, ColumnName::of)))
+    }
+
+    fn of_words<T: Clone>(&self, kept: &Seen<T>, text: &str, of: fn(&str, Vocabulary<'_>) -> T) -> T {
+        if self.vocabulary.is_built_in() {
+            kept.get(text, |text| of(text, self.vocabulary))
+        } else {
+            of(text, self.vocabulary)
+        }
     }
 
     pub fn error(&self, line: usize, column: usize, problem: ReadProblem) -> ReadError {
