@@ -1,6 +1,6 @@
 //! The adaptive time step in large rotations, measured as in [`crate::solve::newmark`].
 
-use super::{Motion, Now};
+use super::motion::{Motion, Now};
 use crate::solve::SolveError;
 use crate::solve::newmark::adaptive::inertia_of_reach;
 use crate::solve::nonlinear::NonlinearError;

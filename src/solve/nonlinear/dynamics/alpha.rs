@@ -1,6 +1,6 @@
 //! Steps of the generalised-α method.
 
-use super::{Motion, Now, Rates};
+use super::motion::{Motion, Now, Rates};
 
 impl Motion<'_> {
     /// Velocities and accelerations at the end of a step of the generalised-α method.

@@ -14,7 +14,9 @@
 //! keeps the energy by one such number is that of a discrete gradient (Gonzalez, *J. Nonlinear Sci.* 6 (1996) 449), with the
 //! stiffness as its metric.
 
-use super::{Balance, Guess, Motion, Now, Rates, State};
+use super::super::State;
+use super::super::system::Balance;
+use super::motion::{Guess, Motion, Now, Rates};
 use crate::solve::newmark::Energy;
 
 /// Energies that miss each other by this part of the largest balance.

@@ -22,7 +22,7 @@
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::super::contact::{Touch, turned};
-use super::System;
+use super::super::system::System;
 use crate::model::RigidSurface;
 use crate::solve::nonlinear::State;
 use crate::solve::nonlinear::state::Memory;

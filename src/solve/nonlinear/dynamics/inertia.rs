@@ -3,7 +3,7 @@
 use nalgebra::Matrix4;
 
 use super::super::State;
-use super::System;
+use super::super::system::System;
 use crate::element::{Frame, Mass, Matrix24};
 use crate::solve::assemble::scatter;
 use crate::solve::sparse::BlockMatrix;

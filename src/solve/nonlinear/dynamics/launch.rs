@@ -2,8 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::Motion;
-use super::{Now, Rates};
+use super::motion::{Motion, Now, Rates};
 use crate::model::RigidSurface;
 use crate::section::SheetLaw;
 use crate::solve::nonlinear::Carried;
