@@ -85,13 +85,14 @@ pub fn drape_pictures(
     for Seen { path, folder, size, sheet, bytes } in &seen {
         let test = tests[folder.as_path()].name.clone();
         let others = scales.get(&(folder.as_path(), *size)).copied();
-        let (capture, facts) = measure(sheet, setup, others);
+        let (capture, mut facts) = measure(sheet, setup, others);
         let name = path.to_string_lossy().replace('\\', "/");
         let side = ClothSide::in_name(&stem(path));
+        let mut capture = DrapeCapture { picture: name, test, side, ..capture };
+        facts.extend(capture.mark_copy(&captures));
         for fact in facts {
             observer.found(None, &Finding::new(fact).at(Place::file(path)));
         }
-        let capture = DrapeCapture { picture: name, test, side, ..capture };
         if let Some((sink, bytes)) = sink.zip(bytes.as_ref()) {
             let picture = overlay(bytes, &drawn(sheet, &capture))?;
             sink.write(&format!("{}/{}{OVERLAY}", capture.test, file_name(path)), &picture)?;

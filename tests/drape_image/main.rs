@@ -199,6 +199,7 @@ fn what_is_wrong_with_a_picture_is_told() {
     write("faint.png", Synthetic { levels: [0.52, 0.48, 0.5], ..plain(1, 0.5, false) }.png());
     write("disc.png", plain(1, 0.5, true).png());
     write("oval.png", Synthetic { shape: [0.6, 0.3, 1.2, 0.2], ..plain(1, 0.5, false) }.png());
+    write("again.png", plain(1, 0.5, false).png());
     write("two.png", plain(1, 0.5, false).beside_a_ruler());
     for (code, arguments) in [
         ("R024", ["cut.png", "--pixels-per-cm", "14"]),
@@ -211,6 +212,7 @@ fn what_is_wrong_with_a_picture_is_told() {
         ("K056", ["sheet.png", "--pixels-per-cm", "8"]),
         ("K057", ["oval.png", "--pixels-per-cm", "14"]),
         ("K058", ["sheet.png", "--pixels-per-cm", "14"]),
+        ("K070", ["sheet.png", "again.png", "--pixels-per-cm=14"]),
     ] {
         let (exit, _, errors) = kesf(&[&["drape-image"], &arguments[..]].concat(), root);
         assert!(errors.contains(&format!("{code} ")), "{code}: {errors}");

@@ -134,7 +134,8 @@ pub struct DrapeCapture {
     /// Side of the cloth that is up, where the name of the picture says so.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub side: Option<ClothSide>,
-    /// Codes of the findings for which no mean counts this picture: the sheet is cut off (K054), or the coefficient cannot be (K056).
+    /// Codes of the findings for which no mean counts this picture: the sheet is cut off (K054), the coefficient cannot be (K056), or
+    /// it is a copy of another picture of the test (K070).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out_for: Vec<String>,
     /// Drape coefficient, 0 to 1; not there without a scale.
@@ -249,6 +250,21 @@ pub fn measure(seen: &SeenSheet, setup: &DrapeSetup, others: Option<f64>) -> (Dr
         |fact: &&DrapeFact| matches!(fact, DrapeFact::CutOff { .. } | DrapeFact::OutOfRange { .. });
     let left_out_for = facts.iter().filter(is_fatal).map(|fact| fact.code().to_string()).collect();
     (DrapeCapture { left_out_for, ..capture }, facts)
+}
+
+impl DrapeCapture {
+    /// Looks for the picture of which this one is a copy, among those before it; as a copy in one test it counts in no mean.
+    pub fn mark_copy(&mut self, before: &[Self]) -> Option<DrapeFact> {
+        let mut before = before.iter();
+        let original =
+            before.find(|other| other.outline == self.outline && other.centre_px == self.centre_px)?;
+        let same_test = original.test == self.test;
+        let fact = DrapeFact::CopiedPicture { original: original.picture.clone(), same_test };
+        if same_test {
+            self.left_out_for.push(fact.code().to_string());
+        }
+        Some(fact)
+    }
 }
 
 fn harmonic(order: usize, [cos, sin]: [f64; 2]) -> Harmonic {

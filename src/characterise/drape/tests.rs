@@ -114,6 +114,12 @@ fn captures_are_summed_up_by_test_and_side() {
     assert!(results[0].method.ends_with("points, 1 left out"), "{results:?}");
     let alone = summaries(&[cut_off]);
     assert!(alone[0].folds.is_none() && drape_results(&alone[0], &DrapeMethod::default()).is_empty());
+    let mut copy = DrapeCapture { picture: "c.png".into(), ..all[0].clone() };
+    assert_eq!(copy.mark_copy(&all[1..]), None);
+    assert_eq!(codes(copy.mark_copy(&all).into_iter().collect()), ["K070"]);
+    assert_eq!((copy.left_out_for, summaries(&all)[0].left_out), (vec!["K070".to_string()], 0));
+    let mut elsewhere = DrapeCapture { test: "b".into(), ..all[0].clone() };
+    assert!(elsewhere.mark_copy(&all).is_some() && elsewhere.left_out_for.is_empty());
     assert_eq!(ClothSide::in_name("poplin-Face-2"), Some(ClothSide::Face));
     assert_eq!(ClothSide::in_name("poplin_2"), None);
 }

@@ -62,6 +62,21 @@ super::facts! {
             /// The sizes.
             method: String,
         } = "the sizes of the test are assumed: {method}; give --method, or --disc and --sheet";
+        /// A picture that was measured already.
+        "K070" CopiedPicture {
+            /// The picture before.
+            original: String,
+            /// Whether that is of the same test.
+            same_test: bool,
+        } = "the outline is that of {original}, point by point, which no sheet hangs in twice: {}", what_a_copy_is(*same_test);
+    }
+}
+
+fn what_a_copy_is(same_test: bool) -> &'static str {
+    if same_test {
+        "the picture is a copy and no repeat, and no mean counts it"
+    } else {
+        "one of the two tests is not what it is called"
     }
 }
 
