@@ -58,7 +58,15 @@ fn write(material: &CardInput<'_>, section: &ShellSection) -> Result<Card, CardE
     part(&mut text, "held_warp", warp.held.iter().map(|k| k + 1), []);
     part(&mut text, "held_weft", weft.held.iter().map(|k| k + 1 + nodes), []);
     // The materials are another file.
-    let out = [Property::Tensile, Property::Bending, Property::Shear, Property::Torsion, Property::Mass];
+    let out = [
+        Property::Tensile,
+        Property::Poisson,
+        Property::Shear,
+        Property::Bending,
+        Property::Torsion,
+        Property::TransverseShear,
+        Property::Mass,
+    ];
     Ok(Card { text, findings: out.map(|what| no_place("a mesh of Kratos", section, what)).into() })
 }
 

@@ -469,6 +469,41 @@ fn what_has_no_place_is_told_with_its_size() {
     }
 }
 
+/// The name of a property, and what changes it.
+type Plant = (&'static str, fn(&mut ShellSection));
+
+/// A stiffness or mass that makes no difference to a card is one that it leaves out, and is told.
+#[test]
+fn what_a_card_does_not_hold_is_told() {
+    let plants: [Plant; 10] = [
+        ("tensile stiffness", |s| s.d_m[(0, 0)] *= 1.25),
+        ("tensile stiffness", |s| s.d_m[(1, 1)] *= 1.25),
+        ("Poisson's ratio", |s| (s.d_m[(0, 1)], s.d_m[(1, 0)]) = (700.0, 700.0)),
+        ("shear stiffness", |s| s.d_m[(2, 2)] *= 1.25),
+        ("bending rigidity", |s| s.d_b[(0, 0)] *= 1.25),
+        ("bending rigidity", |s| s.d_b[(1, 1)] *= 1.25),
+        ("torsional rigidity", |s| s.d_b[(2, 2)] *= 1.25),
+        ("transverse shear", |s| s.d_s[(0, 0)] *= 1.25),
+        ("transverse shear", |s| s.d_s[(1, 1)] *= 1.25),
+        ("mass per area", |s| s.areal_density *= 1.25),
+    ];
+    let mut untold = Vec::new();
+    for target in EXPORTERS {
+        let made = constitutive(section());
+        let own =
+            card(target, &CardInput { sheet: &sheet(), made: &made, stamp: None, crimp: None }).unwrap();
+        for (name, plant) in plants {
+            let mut other = section();
+            plant(&mut other);
+            let is_told = own.findings.iter().any(|finding| finding.message().to_string().contains(name));
+            if written(target.name, other).unwrap() == own.text && !is_told {
+                untold.push(format!("{}: {name}", target.name));
+            }
+        }
+    }
+    assert!(untold.is_empty(), "{untold:#?}");
+}
+
 /// What fields of eight or ten columns cannot hold is refused for all programs alike.
 #[test]
 fn numbers_that_no_cloth_has_are_refused() {
