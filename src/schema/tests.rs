@@ -70,6 +70,19 @@ fn every_key_of_a_case_file_stands_in_the_reference() {
     }
 }
 
+/// What explains a malformed file names every key that it may have.
+#[test]
+fn the_codes_of_malformed_files_name_all_keys() {
+    for (name, code) in [("fabric", "R019"), ("dialect", "R020")] {
+        let schema = generated().into_iter().find(|file| file.name == name).unwrap().schema;
+        let cause = &crate::finding::explain(code).unwrap().cause;
+        let named: Vec<&str> = cause.split(|c: char| !(c.is_ascii_alphabetic() || c == '_')).collect();
+        for key in schema["properties"].as_object().unwrap().keys() {
+            assert!(named.contains(&key.as_str()), "{code}: {key}");
+        }
+    }
+}
+
 /// Defaults are as a file states them; `tests/command/documents.rs` holds the files of this repository against the schemas.
 #[test]
 fn defaults_are_written_as_a_file_writes_them() {
