@@ -2,6 +2,8 @@
 
 use std::fs;
 use std::path::Path;
+use std::thread;
+use std::time::Duration;
 
 use kesf::instrument::{Library, ReadSettings};
 
@@ -11,26 +13,32 @@ use shapes::SHAPES;
 
 /// Processor time that this thread has had (s); `None` where the system does not say.
 fn processor_seconds() -> Option<f64> {
+    // The time of a thread that is running is counted in steps of some milliseconds, and that of one that rested exactly.
+    thread::sleep(Duration::from_micros(1));
     let statistics = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     Some(1e-9 * statistics.split_whitespace().next()?.parse::<f64>().ok()?)
 }
 
-/// The system counts the time of a thread that is running in steps of some milliseconds: what is timed takes many of them.
+/// A machine is shared: what is timed takes so long (s) at least.
 const SPAN: f64 = 0.04;
 
-/// Processor time of reading a file (s), the mean of as many times as take [`SPAN`]. One file is read on the thread that asks.
+/// Processor time of reading a file (s), the mean of as many times as take [`SPAN`]. What a thread has read it keeps for the files
+/// that follow, so that each time has a thread of its own.
 fn of_reading(path: &Path) -> Option<f64> {
-    let start = processor_seconds()?;
-    let mut times = 0.0;
-    loop {
-        let library = Library::find(&[path.to_path_buf()], &ReadSettings::default());
-        library.each(&|_: &Path| (), |input| input.measurements.len());
+    let (mut taken, mut times) = (0.0, 0.0);
+    while taken < SPAN {
+        taken += thread::scope(|scope| scope.spawn(|| of_first_reading(path)).join()).unwrap()?;
         times += 1.0;
-        let taken = processor_seconds()? - start;
-        if taken >= SPAN {
-            return Some(taken / times);
-        }
     }
+    Some(taken / times)
+}
+
+/// The same of a file on this thread, which has read none before. One file is read on the thread that asks.
+fn of_first_reading(path: &Path) -> Option<f64> {
+    let start = processor_seconds()?;
+    let library = Library::find(&[path.to_path_buf()], &ReadSettings::default());
+    library.each(&|_: &Path| (), |input| input.measurements.len());
+    Some(processor_seconds()? - start)
 }
 
 /// Four times as many pieces take less than eight times as long, where they would take sixteen times as long if each
