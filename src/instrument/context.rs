@@ -11,7 +11,7 @@ use super::error::{ReadError, ReadProblem};
 use super::facets::Facets;
 use super::label::Label;
 use super::seen::Seen;
-use super::vocabulary::Vocabulary;
+use super::vocabulary::{HEADING, Vocabulary};
 use crate::finding::{Finding, Place, ReadFact};
 
 // What texts say in the words of the built-in dialects alone is the same in every file, and the files of a laboratory have the same
@@ -56,7 +56,8 @@ impl Context<'_> {
     }
 
     fn of_words<T: Clone>(&self, kept: &Seen<T>, text: &str, of: fn(&str, Vocabulary<'_>) -> T) -> T {
-        if self.vocabulary.is_built_in() {
+        // Longer texts are prose, of which nothing is to be kept for good.
+        if self.vocabulary.is_built_in() && text.len() <= HEADING {
             kept.get(text, |text| of(text, self.vocabulary))
         } else {
             of(text, self.vocabulary)
