@@ -22,7 +22,7 @@ use zip::write::SimpleFileOptions;
 
 use super::error::{ReadError, ReadProblem, bad_workbook as bad};
 use super::raw::{self, Row};
-use super::sniff::{Number, number, sniff};
+use super::sniff::{may_be_number, sniff};
 use super::unit_text::{split_unit, unit};
 use super::vocabulary::Vocabulary;
 use super::workbook::{self, Archive};
@@ -270,7 +270,7 @@ fn parts(cells: &[&str], decimal: char) -> Vec<Part> {
 fn is_value(text: &str, decimal: char) -> bool {
     let begins = text.trim_start_matches(['-', '+', '−', '<', '>', '±', '(']);
     begins.starts_with(|c: char| c.is_ascii_digit())
-        && (!matches!(number(text, decimal), Number::Text)
+        && (may_be_number(text, decimal)
             || split_unit(text).1.is_some_and(|u| unit(&u).is_ok())
             || text
                 .split_whitespace()

@@ -10,9 +10,10 @@ use std::sync::OnceLock;
 use encoding_rs::{Encoding, MACINTOSH, UTF_8, WINDOWS_1252};
 use oem_cp::code_table::{DECODING_TABLE_CP437, DECODING_TABLE_CP850};
 
+use super::known_letters::known_letters;
 use super::raw::{Cell, Row};
 use super::unit_text::{split_unit, unbracketed, unit};
-use super::vocabulary::{HEADING, known_letters};
+use super::vocabulary::HEADING;
 use crate::finding::ReadFact;
 use crate::quantity::Unit;
 

@@ -42,6 +42,7 @@ mod header_line;
 mod header_value;
 mod inference;
 mod keyed_rows;
+mod known_letters;
 mod label;
 mod layout;
 mod letters;

@@ -9,7 +9,7 @@ use encoding_rs::{
 
 use super::dos::CodePage;
 use super::error::ReadProblem;
-use super::vocabulary::known_letters;
+use super::known_letters::known_letters;
 use super::words::trimmed;
 
 /// Decoded text and the name of the encoding that was decided.
@@ -324,8 +324,8 @@ pub(super) fn cells(line: &str, delimiter: char) -> Vec<Cell<'_>> {
         let end = if plain { rest.find(delimiter).unwrap_or(rest.len()) } else { cell_end(rest, delimiter) };
         let raw = &rest[..end];
         let behind_lead = raw.trim_start_matches(' ');
-        let trimmed = behind_lead.trim_end_matches(' ');
-        let text = if plain { Cow::Borrowed(trimmed) } else { unquoted(trimmed) };
+        let bare = behind_lead.trim_end_matches(' ');
+        let text = if plain { Cow::Borrowed(bare) } else { unquoted(bare) };
         out.push(Cell { text, column: column + raw.len() - behind_lead.len() });
         if end == rest.len() {
             return out;

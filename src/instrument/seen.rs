@@ -4,7 +4,8 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 
-/// Texts that are kept: headers have fewer, and the names of 100,000 rows are each asked for once.
+/// Texts that are kept, until one more comes and all are forgotten: headers have fewer, and the names of 100,000 rows are each asked
+/// for once.
 const MOST: usize = 1024;
 
 /// Answers by their text.

@@ -90,13 +90,14 @@ fn is_raised(c: char) -> bool {
 /// A number without the raised figure of a footnote behind it, `0.52²` being 0.52 and no 0.522; none of what has no such figure,
 /// and of powers of ten.
 fn without_raised(cell: &str) -> Option<String> {
-    let is_marked = cell.chars().zip(cell.chars().skip(1)).any(|(a, b)| a.is_ascii_digit() && is_raised(b));
-    if cell.is_ascii() || !is_marked {
+    if cell.is_ascii() {
         return None;
     }
+    let is_marked = cell.chars().zip(cell.chars().skip(1)).any(|(a, b)| a.is_ascii_digit() && is_raised(b));
     let bare: String = cell.chars().filter(|c| !is_raised(*c)).collect();
     let is_power = bare.split(|c: char| !c.is_ascii_digit()).any(|digits| digits == "10");
-    (!is_power && bare.starts_with(|c: char| c.is_ascii_digit() || "+-−.,".contains(c))).then_some(bare)
+    (is_marked && !is_power && bare.starts_with(|c: char| c.is_ascii_digit() || "+-−.,".contains(c)))
+        .then_some(bare)
 }
 
 /// A number without the range in brackets behind it, `0.081 [0.07-0.09]` and `0.081 (0.07, 0.09)`, or a deviation without a number behind

@@ -54,11 +54,13 @@ impl DrapeMethod {
         let words = method.to_lowercase();
         let says = |word: &str| words.contains(word);
         let mut sizes = lengths(&words);
-        // One radius beside a diameter is not clear enough.
-        match words.matches("radius").count() {
-            0 => {}
-            radii if radii >= sizes.len() => sizes.iter_mut().for_each(|size| *size *= 2.0),
-            _ => return None,
+        let radii = if says("radii") { sizes.len() } else { words.matches("radius").count() };
+        if radii > 0 {
+            // One radius beside a diameter is not clear enough.
+            if radii < sizes.len() {
+                return None;
+            }
+            sizes.iter_mut().for_each(|size| *size *= 2.0);
         }
         sizes.sort_by(f64::total_cmp);
         sizes.dedup_by(|a, b| (*a - *b).abs() < 1e-3);
@@ -180,6 +182,7 @@ mod tests {
             ("24 centimetres on 18 centimetres", 0.24, 0.18, false),
             ("30.0±0.1 cm, 18 cm", 0.30, 0.18, false),
             ("sheet radius 12 cm, disc radius 9 cm", 0.24, 0.18, false),
+            ("radii of disc and sheet: 9 cm, 12 cm", 0.24, 0.18, false),
             ("disk of 20 cm, specimen of 40 cm", 0.40, 0.20, false),
             ("40 cm on 20 cm", 0.40, 0.20, false),
             ("40/20 cm", 0.40, 0.20, false),

@@ -21,6 +21,7 @@ use crate::kes::DrapeMethod;
 use crate::law::Mode;
 use crate::quantity::significant;
 use crate::report::chart::{self, DrapePlot, ParityPoint};
+use crate::report::number::counted;
 use crate::report::table::{PredictionRow, relative_error};
 use crate::report::vtu::{MeshField, vtu};
 use crate::study::{Drape, DrapeState, Faces, measured_drape};
@@ -446,7 +447,10 @@ fn plot<'a>(task: &Task, d: &'a Drape, nodes: &'a [[f64; 3]]) -> DrapePlot<'a> {
     let ([low, high], s) = (d.band(), &d.finest);
     let mut values = vec![
         ("Drape coefficient".to_string(), format!("{} %", percent(s.coefficient))),
-        (format!("band of {} states", d.near().len()), format!("{} to {} %", percent(low), percent(high))),
+        (
+            format!("band of {}", counted(d.near().len(), "state")),
+            format!("{} to {} %", percent(low), percent(high)),
+        ),
     ];
     values.extend(sampled::values(task, "drape_coefficient", "%", 0.01));
     let hung =

@@ -253,11 +253,12 @@ pub fn measure(seen: &SeenSheet, setup: &DrapeSetup, others: Option<f64>) -> (Dr
 }
 
 impl DrapeCapture {
-    /// Looks for the picture of which this one is a copy, among those before it; as a copy in one test it counts in no mean.
+    /// Looks for the picture of which this one is a copy, among those before it; as a copy within its test it counts in no mean.
     pub fn mark_copy(&mut self, before: &[Self]) -> Option<DrapeFact> {
-        let mut before = before.iter();
-        let original =
-            before.find(|other| other.outline == self.outline && other.centre_px == self.centre_px)?;
+        let originals =
+            before.iter().filter(|other| other.outline == self.outline && other.centre_px == self.centre_px);
+        // One of the same test, where there is one.
+        let original = originals.min_by_key(|other| other.test != self.test)?;
         let same_test = original.test == self.test;
         let fact = DrapeFact::CopiedPicture { original: original.picture.clone(), same_test };
         if same_test {

@@ -120,6 +120,8 @@ fn captures_are_summed_up_by_test_and_side() {
     assert_eq!((copy.left_out_for, summaries(&all)[0].left_out), (vec!["K070".to_string()], 0));
     let mut elsewhere = DrapeCapture { test: "b".into(), ..all[0].clone() };
     assert!(elsewhere.mark_copy(&all).is_some() && elsewhere.left_out_for.is_empty());
+    let mut again = elsewhere.clone();
+    assert!(again.mark_copy(&[all[0].clone(), elsewhere]).is_some() && again.left_out_for == ["K070"]);
     assert_eq!(ClothSide::in_name("poplin-Face-2"), Some(ClothSide::Face));
     assert_eq!(ClothSide::in_name("poplin_2"), None);
 }

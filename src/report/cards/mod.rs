@@ -206,6 +206,9 @@ mod law58_tests;
 mod layer_tests;
 
 #[cfg(test)]
+mod left_out_tests;
+
+#[cfg(test)]
 mod text_tests;
 
 #[cfg(test)]
