@@ -66,6 +66,13 @@ pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileConte
     // One that is left out makes a table of several as well.
     let left_out = contents.iter().flat_map(|c| c.failures.iter().filter_map(|e| e.about.fabric.as_ref()));
     let several = names.iter().copied().chain(left_out).collect::<BTreeSet<_>>().len() > 1;
+    let of_one;
+    let about = if several && !about.info.results.is_empty() {
+        of_one = without_results(group, about);
+        &of_one
+    } else {
+        about
+    };
     let only = if names.len() == 1 { names.first().map(|n| (*n).clone()) } else { None };
     let named = group.name.clone().or(sample).or(only).or(of_fab);
     let name = named.unwrap_or_else(|| group.own_name().into_owned());
@@ -126,6 +133,18 @@ pub(super) fn fabrics(group: &Group, about: &AboutGroup, contents: Vec<FileConte
         finished(fabric, vocabulary)
     };
     out.into_values().enumerate().map(once).collect()
+}
+
+/// What is known of several fabrics: a measured result that is stated once is that of one, and nobody says of which.
+fn without_results(group: &Group, about: &AboutGroup) -> AboutGroup {
+    let names = about.info.results.iter().map(|result| result.quantity.clone()).collect();
+    let reason = Some("the folder holds several fabrics, and it is not said whose it is".into());
+    let told = Finding::new(ReadFact::Unusable { names, reason }).at(Place::file(&group.path));
+    AboutGroup {
+        info: FabricInfo { results: Vec::new(), ..about.info.clone() },
+        settings: about.settings.clone(),
+        findings: about.findings.iter().cloned().chain([told]).collect(),
+    }
 }
 
 /// The fabrics of a file that is in memory, as [`read_fabrics`](super::read_fabrics) reads one on disk, and an error for each that a table

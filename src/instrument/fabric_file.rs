@@ -32,7 +32,7 @@ pub(crate) struct FabricFile {
     results: Vec<MeasuredResult>,
 }
 
-/// What `kesf drape-image` writes: measured results, to be laid beside `fabric.toml`.
+/// What `kesf drape-image` writes: measured results, to be laid beside the measurements of a fabric.
 pub const DRAPE_FILE: &str = "drape.toml";
 
 /// `drape.toml`.
@@ -40,6 +40,31 @@ pub const DRAPE_FILE: &str = "drape.toml";
 #[serde(deny_unknown_fields, default)]
 struct DrapeFile {
     results: Vec<MeasuredResult>,
+}
+
+/// Whether a file holds the measured results of a drape test. A case may have the same name.
+pub fn is_drape_file(path: &Path) -> bool {
+    let is_named = path.file_name().is_some_and(|name| name == DRAPE_FILE);
+    let table = |text: String| text.parse::<toml::Table>().ok();
+    is_named && files::read_to_string(path).ok().and_then(table).is_some_and(|t| t.contains_key("results"))
+}
+
+/// The results of `drape.toml` in a folder, if it has one.
+///
+/// # Errors
+/// `R001` and `R019`, with the position.
+pub(super) fn read_drape_file(folder: &Path) -> Result<Vec<MeasuredResult>, ReadError> {
+    let path = folder.join(DRAPE_FILE);
+    if !is_drape_file(&path) {
+        return Ok(Vec::new());
+    }
+    let file: DrapeFile = from_toml(&path, |reason| ReadProblem::BadFabricFile { reason })?;
+    Ok(file.results)
+}
+
+/// Results that cannot be compared with anything, each told with its file.
+pub(super) fn unusable_results(results: &[MeasuredResult], path: &Path) -> Vec<Finding> {
+    results.iter().filter_map(unusable).map(|fact| Finding::new(fact).at(Place::file(path))).collect()
 }
 
 /// What `fabric.toml` in a folder says: of the fabric, of the conditions of its tests, and what nothing can use;
@@ -52,19 +77,15 @@ pub(super) fn read_fabric_file(
 ) -> Result<(FabricInfo, StatedConditions, Vec<Finding>), ReadError> {
     let path = folder.join("fabric.toml");
     let file: FabricFile = from_toml(&path, |reason| ReadProblem::BadFabricFile { reason })?;
-    let drape = folder.join(DRAPE_FILE);
     let mut results = file.results;
     let mut findings = Vec::new();
-    if files::is_file(&drape) {
-        let found: DrapeFile = from_toml(&drape, |reason| ReadProblem::BadFabricFile { reason })?;
-        for result in found.results {
-            if results.iter().any(|r| r.quantity == result.quantity) {
-                let reason = Some("fabric.toml states it too, and is taken".into());
-                let fact = ReadFact::Unusable { names: vec![result.quantity], reason };
-                findings.push(Finding::new(fact).at(Place::file(&drape)));
-            } else {
-                results.push(result);
-            }
+    for result in read_drape_file(folder)? {
+        if results.iter().any(|r| r.quantity == result.quantity) {
+            let reason = Some("fabric.toml states it too, and is taken".into());
+            let fact = ReadFact::Unusable { names: vec![result.quantity], reason };
+            findings.push(Finding::new(fact).at(Place::file(folder.join(DRAPE_FILE))));
+        } else {
+            results.push(result);
         }
     }
     if file.origin.is_none() {
@@ -82,8 +103,7 @@ pub(super) fn read_fabric_file(
         notes: file.notes,
         results,
     };
-    let finding = |fact| Finding::new(fact).at(Place::file(&path));
-    findings.extend(info.results.iter().filter_map(unusable).map(finding));
+    findings.extend(unusable_results(&info.results, &path));
     Ok((info, file.conditions, findings))
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::assembled::{AboutGroup, Group, fabrics};
 use super::content::ReadSettings;
 use super::error::{ReadError, ReadProblem};
-use super::fabric_file::{DRAPE_FILE, read_dialect, read_fabric_file};
+use super::fabric_file::{DRAPE_FILE, read_dialect, read_drape_file, read_fabric_file, unusable_results};
 use super::own_results::{JOURNAL, MANIFEST, OwnResults};
 use super::passed_by::{Beside, is_data, is_hidden, without_measurement};
 use super::read::read;
@@ -491,8 +491,10 @@ fn about(folder: &Path, settings: &ReadSettings) -> Result<AboutGroup, ReadError
         settings.dialects.insert(0, read_dialect(&dialect)?);
     }
     if !files::is_file(&folder.join("fabric.toml")) {
-        let findings = vec![without_fabric_file(folder)];
-        return Ok(AboutGroup { info: FabricInfo::default(), settings, findings });
+        let info = FabricInfo { results: read_drape_file(folder)?, ..FabricInfo::default() };
+        let mut findings = vec![without_fabric_file(folder)];
+        findings.extend(unusable_results(&info.results, &folder.join(DRAPE_FILE)));
+        return Ok(AboutGroup { info, settings, findings });
     }
     let (info, conditions, findings) = read_fabric_file(folder)?;
     settings.conditions = conditions.or(&settings.conditions);

@@ -99,7 +99,7 @@ pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, HeaderKey, Role, Statist
 pub use error::{About, ReadError, ReadProblem};
 #[cfg(test)]
 pub(crate) use fabric_file::FabricFile;
-pub use fabric_file::{DRAPE_FILE, read_dialect};
+pub use fabric_file::{DRAPE_FILE, is_drape_file, read_dialect};
 pub use file_name::is_data_name;
 pub use folder::{FabricBatch, Library, read_fabrics};
 pub use measurement::{

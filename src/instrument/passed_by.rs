@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::error::{ReadError, ReadProblem};
+use super::fabric_file::is_drape_file;
 use super::file_name::{ABOUT, EXTENSIONS, is_data_name};
 use crate::finding::{Finding, Place, UsageFact};
 use crate::platform::files;
@@ -109,7 +110,7 @@ pub(super) fn without_measurement(folder: &Path, paths: &[PathBuf]) -> Option<Fi
 /// What is in no folder of a fabric without measurements: folders, cases, parts of a batch; and links that are told.
 fn is_something_else(path: &Path) -> bool {
     let ending = lower(path.extension());
-    let is_case = ending == "toml" && lower(path.file_name()) != "dialect.toml";
+    let is_case = ending == "toml" && lower(path.file_name()) != "dialect.toml" && !is_drape_file(path);
     is_case || ending == "parquet" || files::is_folder(path) || leads_nowhere(path)
 }
 

@@ -68,17 +68,22 @@ fn layout(words: &[String], closest: &[(&str, Vec<&str>)]) -> Vec<String> {
     }
     let unknown = closest.first().map(|(_, unknown)| unknown.as_slice()).unwrap_or_default();
     lines.push("a dialect file, to be saved as dialect.toml beside the data and completed:".to_string());
-    lines.extend(dialect_file(unknown).lines().map(|line| format!("    {line}")));
+    lines.extend(dialect_file(unknown, words).lines().map(|line| format!("    {line}")));
     lines
 }
 
-/// A dialect file with a line for every unknown heading.
-fn dialect_file(unknown: &[&str]) -> String {
+/// A dialect file with a line for every unknown heading, of all that stand over the numbers.
+fn dialect_file(unknown: &[&str], all: &[String]) -> String {
     let mut roles: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     let mut open = Vec::new();
+    let stated: Vec<&str> = all.iter().filter_map(|heading| held(heading)).collect();
+    // Micrometres over the sweep of a surface are its height, and beside a pressure a thickness.
+    let is_surface = stated.contains(&"height") && !stated.contains(&"pressure");
     for heading in unknown {
-        let (name, text) = split_unit(heading);
-        match text.and_then(|t| role(&t)) {
+        let (name, _) = split_unit(heading);
+        match held(heading) {
+            Some("displacement") if is_surface => roles.entry("position").or_default().push(name),
+            Some("height") if !is_surface => roles.entry("thickness").or_default().push(name),
             Some(role) => roles.entry(role).or_default().push(name),
             None => open.push(name),
         }
@@ -88,11 +93,19 @@ fn dialect_file(unknown: &[&str]) -> String {
         out += &format!("{role} = {names:?}\n");
     }
     for name in open {
-        let choice = "strain, angle, curvature, thickness, force, shear_force, moment, pressure or ignored";
-        out += &format!("# {choice} = [{name:?}]\n");
+        out += &format!("# {CHOICE} = [{name:?}]\n");
     }
     out
 }
+
+/// What a heading holds, as far as its unit tells.
+fn held(heading: &str) -> Option<&'static str> {
+    role(&split_unit(heading).1?)
+}
+
+/// What a column may be, in the spelling of dialect files.
+const CHOICE: &str = "strain, angle, curvature, thickness, displacement, force, shear_force, moment, pressure, position, height, \
+                      friction_coefficient, friction_force or ignored";
 
 /// The column that has such a unit, in the spelling of dialect files.
 fn role(text: &str) -> Option<&'static str> {
@@ -105,6 +118,7 @@ fn role(text: &str) -> Option<&'static str> {
         () if is_angle => None,
         () if is(Role::Strain) => Some("strain"),
         () if is(Role::Curvature) => Some("curvature"),
+        () if is(Role::Height) && stated.factor < 1e-4 => Some("height"),
         () if is(Role::Displacement) => Some("displacement"),
         () if is(Role::Force) => Some("force"),
         () if is(Role::Pressure) => Some("pressure"),
@@ -119,6 +133,8 @@ fn role(text: &str) -> Option<&'static str> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
     use crate::instrument::Dialect;
 
@@ -134,15 +150,38 @@ mod tests {
             ("e (%)", "strain"),
             ("s (mm)", "displacement"),
             ("p (gf/cm²)", "pressure"),
+            ("h (um)", "height"),
         ] {
-            let text = dialect_file(&[heading]);
+            let text = dialect_file(&[heading], &[heading.to_string()]);
             let dialect = Dialect::from_toml(&text).unwrap();
             let role = format!("{:?}", dialect.columns.keys().next().unwrap()).to_lowercase();
             assert_eq!(role, expected, "{heading}");
         }
         for heading in ["foo", "foo (kg)", "foo (gf·cm²/cm)"] {
-            let dialect = Dialect::from_toml(&dialect_file(&[heading])).unwrap();
+            let dialect = Dialect::from_toml(&dialect_file(&[heading], &[heading.to_string()])).unwrap();
             assert!(dialect.columns.is_empty(), "{heading}");
         }
+        for (headings, expected) in [
+            (["x (mm)", "h (µm)"], [Role::Position, Role::Height]),
+            (["p (gf/cm²)", "h (µm)"], [Role::Thickness, Role::Pressure]),
+        ] {
+            let dialect = Dialect::from_toml(&dialect_file(&headings, &headings.map(String::from))).unwrap();
+            assert_eq!(dialect.columns.into_keys().collect::<Vec<_>>(), expected);
+        }
+    }
+
+    /// What is offered for a column are the words that a dialect file takes.
+    #[test]
+    fn every_column_is_offered() {
+        let offered: BTreeSet<Role> = CHOICE
+            .replace(" or ", ", ")
+            .split(", ")
+            .flat_map(|word| {
+                let text = format!("name = \"x\"\n\n[columns]\n{word} = [\"y\"]\n");
+                Dialect::from_toml(&text).unwrap().columns.into_keys()
+            })
+            .collect();
+        let schema = serde_json::to_value(schemars::schema_for!(Role)).unwrap();
+        assert_eq!(Some(offered.len()), schema["oneOf"].as_array().map(Vec::len), "{schema}");
     }
 }

@@ -14,7 +14,8 @@ use crate::characterise::{FabricSheet, Modulus, Settings, characterise};
 use crate::constitutive::Constitutive;
 use crate::finding::{Finding, Place};
 use crate::instrument::{
-    FabricInput, Inference, Library, ReadError, ReadProblem, ReadSettings, parse_fabrics, read_dialect,
+    FabricInput, Inference, Library, ReadError, ReadProblem, ReadSettings, is_drape_file, parse_fabrics,
+    read_dialect,
 };
 use crate::platform::files;
 use crate::report::table::FabricRow;
@@ -307,7 +308,7 @@ fn case_text(bytes: &[u8]) -> Option<&str> {
 }
 
 /// The cases among the inputs: `.toml` files, and those in a folder or below it, in name order; and what is wrong with
-/// others. `fabric.toml` and `dialect.toml` are none, and a fabric's folder holds none.
+/// others. `fabric.toml`, `dialect.toml` and the `drape.toml` of measured results are none, and a fabric's folder holds none.
 pub fn cases(inputs: &[Input]) -> (Vec<Case>, Vec<Failure>) {
     let (mut cases, mut failures) = (Vec::new(), Vec::new());
     let mut files = Vec::new();
@@ -346,7 +347,10 @@ pub fn without_cases(inputs: &[Input]) -> Vec<Input> {
 /// Whether a path is named like a case file.
 fn has_name_of_case(path: &Path) -> bool {
     let name = path.file_name().and_then(|n| n.to_str()).unwrap_or_default();
-    name.ends_with(".toml") && !name.starts_with('.') && !["fabric.toml", "dialect.toml"].contains(&name)
+    name.ends_with(".toml")
+        && !name.starts_with('.')
+        && !["fabric.toml", "dialect.toml"].contains(&name)
+        && !is_drape_file(path)
 }
 
 /// Whether a path is a folder that is no fabric: it may hold cases.

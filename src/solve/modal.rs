@@ -1,6 +1,7 @@
 //! Natural frequencies and modes: subspace iteration on the sparse factorisation.
 
 mod dense;
+mod products;
 mod subspace;
 
 use super::SolveError;

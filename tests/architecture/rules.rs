@@ -201,7 +201,15 @@ pub const LAYERS: &[(&str, &[&str], &[&str])] = &[
 /// Paths (crates, or modules and types of the standard library) that may be named below certain
 /// places only.
 const PLACES: &[(&str, &[&str])] = &[
-    ("faer", &["src/solve/factor", "src/solve/multifrontal", "src/characterise/friction/nnls.rs"]),
+    (
+        "faer",
+        &[
+            "src/solve/factor",
+            "src/solve/modal/products.rs",
+            "src/solve/multifrontal",
+            "src/characterise/friction/nnls.rs",
+        ],
+    ),
     // A target without a system has none of these: threads, the clock and files that are read are in
     // `platform`, files are written where results leave, and the rest is the command's.
     ("rayon", &["src/platform/parallel.rs", "src/cli/"]),

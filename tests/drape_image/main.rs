@@ -174,6 +174,24 @@ fn the_command_measures_writes_and_feeds_a_fabric() {
         kesf::characterise::characterise(&fabrics.fabrics[0], &kesf::characterise::Settings::default());
     let (measured, method) = kesf::study::measured_drape(&sheet, "drape_coefficient", [0.18, 0.30]).unwrap();
     assert!((measured - mean).abs() < 1e-4 && method.contains("mean of 3 pictures"), "{measured} {method}");
+    // Without fabric.toml as well: it is no case, and of two fabrics nobody says whose it is.
+    std::fs::remove_file(root.join("poplin/fabric.toml")).unwrap();
+    let (code, text, errors) = kesf(&["check", "-v", "poplin"], root);
+    assert!(
+        code == 0 && text.contains("1 fabric, 0 cases, 0 errors") && !errors.contains("S002"),
+        "{text}{errors}"
+    );
+    let read = |table: &str| {
+        std::fs::write(root.join("poplin/results.csv"), table).unwrap();
+        let inputs = [root.join("poplin")];
+        kesf::instrument::read_fabrics(&inputs, &kesf::instrument::ReadSettings::default(), &|_: &Path| ())
+    };
+    let one = read("parameter,value,unit\nB,0.1,gf·cm²/cm\n");
+    assert_eq!(one.fabrics[0].info.results.len(), 2);
+    let two = read("fabric,B (gf·cm²/cm)\nx,0.1\ny,0.2\n");
+    assert!(two.fabrics.len() == 2 && two.fabrics.iter().all(|fabric| fabric.info.results.is_empty()));
+    let told: Vec<String> = two.fabrics[0].findings.iter().map(ToString::to_string).collect();
+    assert!(told.iter().any(|f| f.contains("R104") && f.contains("several fabrics")), "{told:?}");
     // One that fabric.toml states is not overruled.
     let stated = "[[results]]\nquantity = \"drape_coefficient\"\nvalue = \"12 %\"\nmethod = \"y\"\n";
     std::fs::write(root.join("poplin/fabric.toml"), stated).unwrap();

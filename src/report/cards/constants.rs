@@ -89,6 +89,8 @@ pub enum Property {
     Tensile,
     /// Mass per area.
     Mass,
+    /// Thickness of the cloth, which contact and rotary inertia take.
+    Thickness,
 }
 
 /// O044: something of the fabric for which a program has no place at all, with its size.
@@ -108,6 +110,7 @@ pub fn no_place(program: &str, section: &ShellSection, property: Property) -> Fi
         }
         Property::Tensile => ("tensile stiffness", vec![warp.tensile, weft.tensile], " N/m"),
         Property::Mass => ("mass per area", vec![section.areal_density], " kg/m²"),
+        Property::Thickness => ("the thickness of the cloth", vec![1e3 * section.thickness], " mm"),
     };
     left_out(program, name, own, unit)
 }

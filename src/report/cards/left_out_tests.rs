@@ -50,10 +50,10 @@ fn what_has_no_place_is_told_with_its_size() {
 /// The name of a property, and what changes it.
 type Plant = (&'static str, fn(&mut ShellSection));
 
-/// A stiffness or mass that makes no difference to a card is one that it leaves out, and is told.
+/// A stiffness, mass or thickness that makes no difference to a card is one that it leaves out, and is told.
 #[test]
 fn what_a_card_does_not_hold_is_told() {
-    let plants: [Plant; 10] = [
+    let plants: [Plant; 11] = [
         ("tensile stiffness", |s| s.d_m[(0, 0)] *= 1.25),
         ("tensile stiffness", |s| s.d_m[(1, 1)] *= 1.25),
         ("Poisson's ratio", |s| (s.d_m[(0, 1)], s.d_m[(1, 0)]) = (700.0, 700.0)),
@@ -64,6 +64,7 @@ fn what_a_card_does_not_hold_is_told() {
         ("transverse shear", |s| s.d_s[(0, 0)] *= 1.25),
         ("transverse shear", |s| s.d_s[(1, 1)] *= 1.25),
         ("mass per area", |s| s.areal_density *= 1.25),
+        ("thickness", |s| s.thickness *= 1.25),
     ];
     let mut untold = Vec::new();
     for target in EXPORTERS {

@@ -62,7 +62,7 @@ mod usd;
 mod usd_drape;
 
 use crate::section::ShellSection;
-use constants::hysteresis;
+use constants::{Property, hysteresis, no_place};
 
 pub use card::{Card, CardError, CardInput, Exporter, Target};
 pub use laminate::{Laminate, laminate};
@@ -183,12 +183,30 @@ pub fn card(target: Target, material: &CardInput<'_>) -> Result<Card, CardError>
     if !WITH_FRICTION.contains(&target.name) {
         card.findings.extend(hysteresis(target.name, material.sheet));
     }
+    if !WITH_THICKNESS.contains(&target.name) && !material.is_assumed("thickness") {
+        card.findings.push(no_place(target.name, &section, Property::Thickness));
+    }
     Ok(card)
 }
 
 /// Targets whose file has the hysteresis, wherever in it, or that tell what they have of it: no other program knows friction
 /// within a sheet.
 const WITH_FRICTION: &[&str] = &["fabric", "radioss-fabric-a", "u3m"];
+
+/// Targets whose file has the thickness of the cloth. Others take stiffnesses per width, or layers with a thickness of their own.
+const WITH_THICKNESS: &[&str] = &[
+    "abaqus-fabric",
+    "browzwear",
+    "clo",
+    "fabric",
+    "lsdyna",
+    "nastran",
+    "radioss",
+    "radioss-fabric",
+    "radioss-fabric-a",
+    "u3m",
+    "usd",
+];
 
 /// A stiffness, mass or thickness (SI) beyond 1e-30 to 1e30: fields of eight or ten columns have no room for more, and
 /// quotients of such numbers are none.

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+use super::products::{product, tr_product};
 use crate::solve::SolveError;
 use crate::solve::factor::Factor;
 use crate::solve::sparse::BlockMatrix;
@@ -132,9 +133,9 @@ fn subspace_to(
         let mut z = y.clone();
         factor.solve(z.as_mut_slice(), columns);
         let (values, vectors) = wanted
-            .of_small(z.tr_mul(&y), z.tr_mul(&times(mass, &z)))
+            .of_small(tr_product(&z, &y), tr_product(&z, &times(mass, &z)))
             .ok_or(SolveError::ModesNotSettled { rounds: round })?;
-        x = z * vectors;
+        x = product(&z, &vectors);
         // Two of opposite sign may be equally near to zero, and change places.
         let pairs = previous.iter().zip(values.iter());
         let changes = pairs.map(|(old, new)| (old.abs() - new.abs()).abs() / new.abs());
