@@ -27,9 +27,9 @@ pub(crate) use error::is_of_memory;
 pub use error::{Coded, FailureKind};
 pub(crate) use error::{as_text, errors, fields_of};
 pub use facts::{
-    CoarseQuantity, DrapeFact, EvaluationFact, Excess, ExchangeFact, Fact, Fields, LeftOutLine, Missed,
-    ReadFact, RecordAxis, RefinementEnd, Renaming, Samples, SectionFact, StripLength, StudyFact, Subject,
-    UsageFact,
+    CoarseQuantity, Contradiction, DrapeFact, EvaluationFact, Excess, ExchangeFact, Fact, Fields,
+    LeftOutLine, Missed, ReadFact, RecordAxis, RefinementEnd, Renaming, Samples, SectionFact, StripLength,
+    StudyFact, Subject, UsageFact,
 };
 pub use toml_file::Located;
 pub(crate) use toml_file::{Node, ReadLater, TomlError, TomlFile, position};

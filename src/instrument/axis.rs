@@ -89,6 +89,7 @@ impl Axes<'_> {
         };
         if !is_volt(&text) {
             let unit = known_unit(&text).map_err(error)?;
+            self.context.compare_unit(column.role, &column.name, &text);
             return self
                 .axis(column.role, abscissa, unit, &text)?
                 .map_err(|expected| error(wrong(&text, expected)));

@@ -306,13 +306,15 @@ impl StatedConditions {
         self.tests.get(&test).copied().unwrap_or_default()
     }
 
-    /// Whether the width, the gauge or the contact load of a test is stated; otherwise it is that of the standard set.
+    /// Whether a condition of a test is stated; otherwise it is that of the standard set.
     pub(super) fn states(&self, test: Test, key: HeaderKey) -> bool {
         let stated = self.of(test);
         match key {
             HeaderKey::Contact => stated.contact.is_some(),
             HeaderKey::Width => stated.width.or(self.width).is_some(),
             HeaderKey::Gauge => stated.gauge.is_some(),
+            HeaderKey::Maximum => stated.maximum.is_some(),
+            HeaderKey::Pretension => stated.pretension.is_some(),
             _ => false,
         }
     }

@@ -1,7 +1,7 @@
 //! What is known of a file while it is read.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::column_name::ColumnName;
@@ -11,8 +11,9 @@ use super::error::{ReadError, ReadProblem};
 use super::facets::Facets;
 use super::label::Label;
 use super::seen::Seen;
+use super::unit_text::unit;
 use super::vocabulary::{HEADING, Vocabulary};
-use crate::finding::{Finding, Place, ReadFact};
+use crate::finding::{Contradiction, Finding, Place, ReadFact};
 
 // What texts say in the words of the built-in dialects alone is the same in every file, and the files of a laboratory have the same
 // headers.
@@ -41,6 +42,8 @@ pub(super) struct Context<'a> {
     pub column_names: Seen<ColumnName>,
     /// What stands without a unit and was taken in the customary one, with that unit.
     pub assumed_units: RefCell<BTreeMap<String, &'static str>>,
+    /// What the file states against what was said elsewhere.
+    pub contradictions: RefCell<BTreeSet<Contradiction>>,
 }
 
 impl Context<'_> {
@@ -78,6 +81,29 @@ impl Context<'_> {
         let assumed = self.assumed_units.take();
         let units: Vec<String> = assumed.into_iter().map(|(of, unit)| format!("{of} in {unit}")).collect();
         (!units.is_empty()).then(|| Finding::new(ReadFact::AssumedUnits { units }).at(Place::file(self.path)))
+    }
+
+    /// Takes what the file states, of which [`Self::note_of_contradictions`] tells where something else was said elsewhere.
+    pub fn take_of_file(&self, what: String, file: &str, elsewhere: &str) {
+        let [file, elsewhere] = [file, elsewhere].map(String::from);
+        self.contradictions.borrow_mut().insert(Contradiction { what, file, elsewhere });
+    }
+
+    /// R153: what the file states against what was said elsewhere.
+    pub fn note_of_contradictions(&self) -> Option<Finding> {
+        let statements: Vec<Contradiction> = self.contradictions.take().into_iter().collect();
+        let is_any = !statements.is_empty();
+        is_any.then(|| Finding::new(ReadFact::FileTaken { statements }).at(Place::file(self.path)))
+    }
+
+    /// Tells where a column states another unit than the dialect does for what it holds.
+    pub fn compare_unit(&self, role: Role, column: &str, stated: &str) {
+        let Some(of_dialect) = self.dialect.and_then(|d| d.units.get(&role)) else { return };
+        if let (Ok(own), Ok(other)) = (unit(stated), unit(of_dialect))
+            && own != other
+        {
+            self.take_of_file(format!("the unit of {column:?}"), stated, of_dialect);
+        }
     }
 
     /// The unit of a column that states none, which is taken now.

@@ -329,6 +329,9 @@ fn conditions(
     {
         c.contact = positive(load.si(), HeaderKey::Contact, header, context)?;
     }
+    for (what, file, elsewhere) in inference::contradictions(test, &c, &context.conditions) {
+        context.take_of_file(format!("the {what}"), &file, &elsewhere);
+    }
     log.push(inference::conditions(test, &c, header));
     let unknown: Vec<&str> =
         header.other.keys().map(String::as_str).filter(|k| context.vocabulary.key(k).is_none()).collect();

@@ -1,7 +1,7 @@
 //! What was inferred from a curve file, in words for people (`kesf check -v`).
 
 use super::axis::Scale;
-use super::conditions::standard_conditions;
+use super::conditions::{StatedConditions, standard_conditions};
 use super::context::Context;
 use super::dialect::HeaderKey;
 use super::layout::{Column, Header, Pair};
@@ -46,20 +46,50 @@ pub(super) fn curve(
     format!("{text}{sample}: {} points in lines {first} to {last}", rows.len())
 }
 
-/// The conditions and where they come from, for people.
-pub(super) fn conditions(test: Test, c: &Conditions, header: &Header) -> String {
+/// The conditions that a test has, each with its name, its value here and there (SI), and the customary unit.
+fn beside(
+    test: Test,
+    here: &Conditions,
+    there: &Conditions,
+) -> impl Iterator<Item = (HeaderKey, &'static str, f64, f64, &'static str)> {
     let standard = standard_conditions(test);
     let all = [
-        (HeaderKey::Width, "width", c.width, standard.width, "cm"),
-        (HeaderKey::Gauge, "gauge", c.gauge, standard.gauge, "cm"),
-        (HeaderKey::Maximum, "maximum", c.maximum, standard.maximum, test.kes_maximum()),
-        (HeaderKey::Pretension, "tension", c.pretension, standard.pretension, "gf/cm"),
-        (HeaderKey::Contact, "contact load", c.contact, standard.contact, "gf"),
+        (HeaderKey::Width, "width", standard.width, here.width, there.width, "cm"),
+        (HeaderKey::Gauge, "gauge", standard.gauge, here.gauge, there.gauge, "cm"),
+        (HeaderKey::Maximum, "maximum", standard.maximum, here.maximum, there.maximum, test.kes_maximum()),
+        (HeaderKey::Pretension, "tension", standard.pretension, here.pretension, there.pretension, "gf/cm"),
+        (HeaderKey::Contact, "contact load", standard.contact, here.contact, there.contact, "gf"),
     ];
     // What a test does not have is zero in the standard set.
-    let stated: Vec<String> = all
-        .into_iter()
-        .filter(|(.., standard, _)| *standard > 0.0)
+    let own = all.into_iter().filter(|(_, _, standard, ..)| *standard > 0.0);
+    own.map(|(key, name, _, here, there, unit)| (key, name, here, there, unit))
+}
+
+fn in_unit(value: f64, unit: &str) -> String {
+    let factor = unit_of(unit).map_or(f64::NAN, |u| u.factor);
+    format!("{} {unit}", without_rounding(value / factor))
+}
+
+/// Conditions that are stated elsewhere and are others in the file: their names, what the file says, and what was said.
+pub(super) fn contradictions(
+    test: Test,
+    c: &Conditions,
+    stated: &StatedConditions,
+) -> Vec<(&'static str, String, String)> {
+    beside(test, c, &stated.over_standard(test))
+        .filter(|(key, _, here, there, _)| {
+            stated.states(test, *key) && (here - there).abs() > SAME * there.abs()
+        })
+        .map(|(_, name, here, there, unit)| (name, in_unit(here, unit), in_unit(there, unit)))
+        .collect()
+}
+
+/// Conditions that are so near each other are one, in other units.
+const SAME: f64 = 1e-3;
+
+/// The conditions and where they come from, for people.
+pub(super) fn conditions(test: Test, c: &Conditions, header: &Header) -> String {
+    let stated: Vec<String> = beside(test, c, &standard_conditions(test))
         .map(|(key, name, value, standard, unit)| {
             let length =
                 header.known.get(&HeaderKey::Length).filter(|_| key == HeaderKey::Gauge && value != standard);
@@ -68,8 +98,7 @@ pub(super) fn conditions(test: Test, c: &Conditions, header: &Header) -> String 
                 None if value == standard => "standard, not in the file".to_string(),
                 None => "fabric.toml or dialect, not in the file".to_string(),
             };
-            let factor = unit_of(unit).map_or(f64::NAN, |u| u.factor);
-            format!("{name} {} {unit} ({from})", without_rounding(value / factor))
+            format!("{name} {} ({from})", in_unit(value, unit))
         })
         .collect();
     format!("{}: {}", test.name(), stated.join(", "))

@@ -182,6 +182,7 @@ fn context<'a>(
         facets: Seen::default(),
         column_names: Seen::default(),
         assumed_units: RefCell::default(),
+        contradictions: RefCell::default(),
     }
 }
 
@@ -408,6 +409,7 @@ fn plain_table(
         }
     }
     content.findings.extend(context.note_of_units());
+    content.findings.extend(context.note_of_contradictions());
     let mut seen = BTreeSet::new();
     content.inference.retain(|line| seen.insert(line.clone()));
     content.findings.dedup();

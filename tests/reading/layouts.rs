@@ -237,6 +237,22 @@ fn units_that_are_assumed_are_told() {
     assert!(told.len() == 1 && told[0].ends_with("assumed: B in gf·cm²/cm"), "{told:?}");
 }
 
+/// What a file states goes before what a dialect does for files that state nothing, and where both do it is told.
+#[test]
+fn a_dialect_that_is_contradicted_is_told() {
+    let text = "direction,warp\nwidth,200 mm\nK (1/cm),M (gf.cm/cm)\n0,0\n1,0.1\n2,0.2\n";
+    let told = |units: &str, width: &str| {
+        let units = format!("[units]\ncurvature = \"1/cm\"\nmoment = \"{units}\"\n");
+        let toml = format!("name = \"lab\"\n{units}[conditions]\nwidth = \"{width}\"\n");
+        messages(&read_as("a.csv", text, &with_dialect(&toml)).unwrap(), "R153")
+    };
+    // The same in other words.
+    assert!(told("gf·cm/cm", "20 cm").is_empty());
+    let all = told("mN·cm/cm", "10 cm");
+    let expected = "the unit of \"M\" gf.cm/cm, and not mN·cm/cm; the width 20 cm, and not 10 cm";
+    assert!(all.len() == 1 && all[0].ends_with(expected), "{all:?}");
+}
+
 /// A line that says nothing but a number of a specimen is the number of the record below it.
 #[test]
 fn a_line_numbers_the_specimen_below_it() {

@@ -82,6 +82,7 @@ const CASES: &[(&str, &str, &str)] = &[
     ("R150", "r150-angles.csv", "r150-angles.csv:2:4"),
     ("R151", "r151-states.csv", "r151-states.csv:1:1"),
     ("R152", "r152-units", "r152-units/a_warp_FB2_1.csv"),
+    ("R153", "r153-width", "r153-width/a_warp_FB2_1.csv"),
     ("R149", "r149-branches", "r149-branches:2"),
     ("R147", "r147-significance.csv", "r147-significance.csv:2:3"),
     ("R141", "r141-no-origin", "r141-no-origin/fabric.toml"),

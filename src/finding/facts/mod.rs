@@ -23,8 +23,8 @@ pub use drape::DrapeFact;
 pub use evaluation::EvaluationFact;
 pub use exchange::ExchangeFact;
 pub use parts::{
-    CoarseQuantity, Excess, LeftOutLine, Missed, RecordAxis, RefinementEnd, Renaming, Samples, StripLength,
-    Subject,
+    CoarseQuantity, Contradiction, Excess, LeftOutLine, Missed, RecordAxis, RefinementEnd, Renaming, Samples,
+    StripLength, Subject,
 };
 pub use reading::ReadFact;
 pub use section::SectionFact;

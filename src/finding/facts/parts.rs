@@ -40,6 +40,17 @@ impl fmt::Display for Subject {
     }
 }
 
+/// A statement of a file that another one contradicts.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Contradiction {
+    /// What is stated: `width`, `unit of "M"`.
+    pub what: String,
+    /// What the file says.
+    pub file: String,
+    /// What is said elsewhere.
+    pub elsewhere: String,
+}
+
 /// An axis of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -1,6 +1,6 @@
 //! Facts of files.
 
-use super::parts::LeftOutLine;
+use super::parts::{Contradiction, LeftOutLine};
 use crate::kes::{Direction, Divisor, Key, Parameter, RecordName, Test};
 use crate::quantity::{STANDARD_GRAVITY, without_rounding};
 
@@ -68,6 +68,12 @@ super::facts! {
             /// What was taken in which unit: `moment in gf·cm/cm`.
             units: Vec<String>,
         } = "no unit is stated, and the customary one of the instruments is assumed: {}", units.join(", ");
+        /// What a file states against its dialect, fabric.toml or the settings.
+        "R153" FileTaken {
+            /// What the file says, and they.
+            statements: Vec<Contradiction>,
+        } = "what the file states is taken, and not what its dialect, fabric.toml or the settings do: {}",
+            contradictions(statements);
         /// Rows, columns or curves that sum up others.
         "R110" SummingUp {
             /// `rows`, `columns`, `curves`, `sheets` or `files`.
@@ -394,6 +400,11 @@ fn some(texts: &[String]) -> String {
         0 => named,
         more => format!("{named} and {more} more"),
     }
+}
+
+fn contradictions(statements: &[Contradiction]) -> String {
+    let each = statements.iter().map(|s| format!("{} {}, and not {}", s.what, s.file, s.elsewhere));
+    each.collect::<Vec<_>>().join("; ")
 }
 
 fn lines(left_out: &[LeftOutLine]) -> String {
