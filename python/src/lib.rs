@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `error.rs` | failures of the library, as `KesfError` |
 //! | `work.rs` | long work: threads, signals, progress |
-//! | `told.rs` | findings and failures as JSON |
+//! | `messages.rs` | findings and failures as JSON |
 //! | `table.rs` | tables, as Arrow streams |
 //! | `fabric.rs` | measurements |
 //! | `sheet.rs` | parameters of fabrics |
