@@ -275,6 +275,12 @@ problems! {
         title: String,
     } = "{title:?} says that the numbers are statistics or comparisons, and no values of fabrics",
         "remove the table, or give it another title if it holds values; standard deviations stand beside their values, or in brackets behind them";
+    /// A file that says something of a fabric was named as a measurement.
+    "R027" NoMeasurement {
+        /// The name of the file.
+        found: String,
+    } = "{found} says something of the fabric in its folder, and holds no measurement",
+        "name the folder in its place: the file is read with the measurements there";
     /// A link among the inputs leads nowhere.
     "O062" DanglingLink = "this link leads nowhere, and nothing was read",
         "restore what it leads to, or remove it";

@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 use super::assembled::{AboutGroup, Group, fabrics};
 use super::content::ReadSettings;
 use super::error::{ReadError, ReadProblem};
-use super::fabric_file::{DRAPE_FILE, read_dialect, read_drape_file, read_fabric_file, unusable_results};
+use super::fabric_file::{
+    DRAPE_FILE, is_drape_file, read_dialect, read_drape_file, read_fabric_file, unusable_results,
+};
 use super::own_results::{JOURNAL, MANIFEST, OwnResults};
 use super::passed_by::{Beside, is_data, is_hidden, without_measurement};
 use super::read::read;
@@ -72,6 +74,10 @@ impl Library {
                 library
                     .findings
                     .push(Finding::new(UsageFact::OwnResults { files: 1 }).at(Place::file(input)));
+            } else if says_of_fabric(input) {
+                let found = input.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let problem = ReadProblem::NoMeasurement { found };
+                library.failures.push(ReadError::new(Place::file(input), problem));
             } else if let Some(folder) = fabric_folder(input) {
                 library.add_to(folder, input, settings, &mut known);
             } else {
@@ -295,6 +301,12 @@ impl Group {
             }),
         }
     }
+}
+
+/// Whether a file is read with the measurements beside it.
+fn says_of_fabric(file: &Path) -> bool {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    (BESIDE.contains(&&*name) && name != DRAPE_FILE) || is_drape_file(file)
 }
 
 /// Whether one of the inputs is another one, or lies in it.

@@ -103,6 +103,21 @@ fn a_check_that_fails_and_a_set_that_is_missing_are_told_with_their_line() {
     }
 }
 
+/// Files that are read with the measurements beside them are none themselves.
+#[test]
+fn a_description_is_no_measurement() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    fs::write(here.join("fabric.toml"), "name = \"x\"\n").unwrap();
+    fs::write(here.join("drape.toml"), "[[results]]\nquantity = \"drape_coefficient\"\nvalue = \"50 %\"\n")
+        .unwrap();
+    for name in ["fabric.toml", "drape.toml"] {
+        let (code, said) = status_and_errors(&run_in(here, &["check", name], ""));
+        let expected = format!("{name}: R027 {name} says something of the fabric in its folder");
+        assert!(code == 2 && said.contains(&expected), "{code} {said}");
+    }
+}
+
 #[test]
 fn keys_that_have_no_effect_and_points_off_the_sheet_are_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -143,6 +143,7 @@ const NOT_FROM_FILES: &[(&str, &str)] = &[
     ("K015", "a curve without a direction is refused with R012"),
     ("K019", "specimens that share a number are renumbered with R103"),
     ("K022", "values that are not finite are left out (R145) or refused (R017)"),
+    ("R027", "of files that are named, and not found: tests/command/inputs.rs"),
     ("R024", "of pictures, which no folder is searched for: tests/drape_image"),
     ("R025", "the same"),
     ("K050", "the same"),
