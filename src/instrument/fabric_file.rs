@@ -55,7 +55,7 @@ pub fn is_drape_file(path: &Path) -> bool {
 /// `R001` and `R019`, with the position.
 pub(super) fn read_drape_file(folder: &Path) -> Result<Vec<MeasuredResult>, ReadError> {
     let path = folder.join(DRAPE_FILE);
-    if !is_drape_file(&path) {
+    if !files::is_file(&path) {
         return Ok(Vec::new());
     }
     let file: DrapeFile = from_toml(&path, |reason| ReadProblem::BadFabricFile { reason })?;

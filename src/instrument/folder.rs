@@ -503,9 +503,12 @@ fn about(folder: &Path, settings: &ReadSettings) -> Result<AboutGroup, ReadError
         settings.dialects.insert(0, read_dialect(&dialect)?);
     }
     if !files::is_file(&folder.join("fabric.toml")) {
-        let info = FabricInfo { results: read_drape_file(folder)?, ..FabricInfo::default() };
+        // A case may have the name of the file as well, where there is no fabric.toml.
+        let drape = folder.join(DRAPE_FILE);
+        let results = if is_drape_file(&drape) { read_drape_file(folder)? } else { Vec::new() };
         let mut findings = vec![without_fabric_file(folder)];
-        findings.extend(unusable_results(&info.results, &folder.join(DRAPE_FILE)));
+        findings.extend(unusable_results(&results, &drape));
+        let info = FabricInfo { results, ..FabricInfo::default() };
         return Ok(AboutGroup { info, settings, findings });
     }
     let (info, conditions, findings) = read_fabric_file(folder)?;
