@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use super::about::AboutGroup;
 use super::content::{FileContent, ReadSettings};
 use super::dialect::HeaderKey;
 use super::means;
@@ -45,13 +46,6 @@ impl Group {
             }
         }
     }
-}
-
-/// What is known of a group before its files are read. A library of thousands of groups does not keep it.
-pub(super) struct AboutGroup {
-    pub info: FabricInfo,
-    pub settings: ReadSettings,
-    pub findings: Vec<Finding>,
 }
 
 /// The fabrics of a group: one, or as many as its result tables name.

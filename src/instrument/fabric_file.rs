@@ -43,7 +43,7 @@ struct DrapeFile {
 }
 
 /// Whether a file holds the measured results of a drape test. A case may have the same name.
-pub fn is_drape_file(path: &Path) -> bool {
+pub(crate) fn is_drape_file(path: &Path) -> bool {
     let is_named = path.file_name().is_some_and(|name| name == DRAPE_FILE);
     let table = |text: String| text.parse::<toml::Table>().ok();
     is_named && files::read_to_string(path).ok().and_then(table).is_some_and(|t| t.contains_key("results"))

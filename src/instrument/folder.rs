@@ -4,19 +4,17 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::assembled::{AboutGroup, Group, fabrics};
+use super::about::{AboutGroup, BESIDE, about, fabric_folder, says_of_fabric, without_fabric_file};
+use super::assembled::{Group, fabrics};
 use super::content::ReadSettings;
 use super::error::{ReadError, ReadProblem};
-use super::fabric_file::{
-    DRAPE_FILE, is_drape_file, read_dialect, read_drape_file, read_fabric_file, unusable_results,
-};
 use super::own_results::{JOURNAL, MANIFEST, OwnResults};
 use super::passed_by::{Beside, is_data, is_hidden, without_measurement};
 use super::read::read;
 use super::vocabulary::Vocabulary;
 use super::words::normalised;
 use super::{FabricInfo, FabricInput};
-use crate::finding::{Finding, Place, ReadFact, UsageFact};
+use crate::finding::{Finding, Place, UsageFact};
 use crate::platform::{self, files};
 
 /// The fabrics of a batch, and what could not be read.
@@ -32,9 +30,6 @@ pub struct FabricBatch {
 
 /// Files that are read by one thread: starting more takes longer.
 const FEW: usize = 16;
-
-/// Files beside the measurements of a fabric that are read with them.
-const BESIDE: [&str; 3] = ["fabric.toml", "dialect.toml", DRAPE_FILE];
 
 /// The files of a batch, found and not yet read.
 ///
@@ -303,12 +298,6 @@ impl Group {
     }
 }
 
-/// Whether a file is read with the measurements beside it.
-fn says_of_fabric(file: &Path) -> bool {
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    (BESIDE.contains(&&*name) && name != DRAPE_FILE) || is_drape_file(file)
-}
-
 /// Whether one of the inputs is another one, or lies in it.
 fn overlap(inputs: &[PathBuf]) -> bool {
     let mut real: Vec<PathBuf> = inputs.iter().filter_map(|path| files::canonicalize(path).ok()).collect();
@@ -330,23 +319,9 @@ pub fn read_fabrics(
     FabricBatch { fabrics, failures, findings }
 }
 
-/// The folder in which a file lies, or one above it, that has a fabric.toml; on the path as it is given.
-fn fabric_folder(file: &Path) -> Option<&Path> {
-    let mut folder = file.parent()?;
-    while !files::is_file(&folder.join("fabric.toml")) {
-        // What stands before a `..` is not above it.
-        folder = folder.parent().filter(|_| !folder.ends_with(".."))?;
-    }
-    Some(folder)
-}
-
 /// The working directory is above every relative path, and has no text there.
 fn folder_path(folder: &Path) -> &Path {
     if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
-}
-
-fn without_fabric_file(path: &Path) -> Finding {
-    Finding::new(ReadFact::NoFabricFile {}).at(Place::file(path))
 }
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, ReadError> {
@@ -493,25 +468,4 @@ fn group(folder: &Path, files: Vec<PathBuf>, settings: &ReadSettings) -> Result<
             Err(error)
         }
     }
-}
-
-/// Reads what the folder says of its data.
-fn about(folder: &Path, settings: &ReadSettings) -> Result<AboutGroup, ReadError> {
-    let mut settings = settings.clone();
-    let dialect = folder.join("dialect.toml");
-    if files::is_file(&dialect) {
-        settings.dialects.insert(0, read_dialect(&dialect)?);
-    }
-    if !files::is_file(&folder.join("fabric.toml")) {
-        // A case may have the name of the file as well, where there is no fabric.toml.
-        let drape = folder.join(DRAPE_FILE);
-        let results = if is_drape_file(&drape) { read_drape_file(folder)? } else { Vec::new() };
-        let mut findings = vec![without_fabric_file(folder)];
-        findings.extend(unusable_results(&results, &drape));
-        let info = FabricInfo { results, ..FabricInfo::default() };
-        return Ok(AboutGroup { info, settings, findings });
-    }
-    let (info, conditions, findings) = read_fabric_file(folder)?;
-    settings.conditions = conditions.or(&settings.conditions);
-    Ok(AboutGroup { info, settings, findings })
 }

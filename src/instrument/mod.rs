@@ -4,6 +4,7 @@
 //! and `result_table` turn cells into [`Measurement`]s and [`ResultValue`]s. Nothing here computes a
 //! parameter, and raw data are never altered beyond their units.
 
+mod about;
 mod abscissae;
 mod across;
 mod angle;
@@ -99,7 +100,8 @@ pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, HeaderKey, Role, Statist
 pub use error::{About, ReadError, ReadProblem};
 #[cfg(test)]
 pub(crate) use fabric_file::FabricFile;
-pub use fabric_file::{DRAPE_FILE, is_drape_file, read_dialect};
+pub(crate) use fabric_file::is_drape_file;
+pub use fabric_file::{DRAPE_FILE, read_dialect};
 pub use file_name::is_data_name;
 pub use folder::{FabricBatch, Library, read_fabrics};
 pub use measurement::{

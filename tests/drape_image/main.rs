@@ -199,6 +199,10 @@ fn the_command_measures_writes_and_feeds_a_fabric() {
     let expected =
         "drape.toml: R104 the measured result `drape_coefficient` is left out: fabric.toml states it too";
     assert!(errors.contains(expected), "{errors}");
+    // Beside fabric.toml a file with this name is no case, whatever it says.
+    std::fs::write(root.join("poplin/drape.toml"), "[[result]]\nquantity = \"drape_coefficient\"\n").unwrap();
+    let (code, _, errors) = kesf(&["check", "poplin"], root);
+    assert!(code == 2 && errors.contains("drape.toml:1:3: R019"), "{code} {errors}");
 }
 
 /// Every code of pictures, in the picture that gives it.
