@@ -100,6 +100,7 @@ pub use dialect::{BranchColumn, DIALECT_FILES, Dialect, HeaderKey, Role, Statist
 pub use error::{About, ReadError, ReadProblem};
 #[cfg(test)]
 pub(crate) use fabric_file::FabricFile;
+#[cfg(feature = "results")]
 pub(crate) use fabric_file::is_drape_file;
 pub use fabric_file::{DRAPE_FILE, read_dialect};
 pub use file_name::is_data_name;
